@@ -1,0 +1,73 @@
+//! Everything that can go wrong, each with what to do next.
+
+/// An error of the engine. Bad *edits* are not errors: they are reported by
+/// `SyncReport`, and the object is drawn always.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A viewport with a side of 0 or beyond the limit.
+    #[error("a viewport of {width} × {height} pixels cannot be drawn: each side must be 1 to 16384")]
+    Viewport {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+    },
+    /// A matrix that no view can be made of.
+    #[error("the matrix {name} {why}; check the camera's position, field of view and planes")]
+    Matrix {
+        /// Which matrix.
+        name: &'static str,
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// A mesh whose arrays do not fit together.
+    #[error("mesh {name}: {why}")]
+    Mesh {
+        /// The mesh, as far as it has a name.
+        name: String,
+        /// The element at fault and what is wrong with it.
+        why: String,
+    },
+    /// A file that could not be read.
+    #[error("{path}: {why}")]
+    File {
+        /// The file.
+        path: String,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// The scene was edited and not brought up to date before a frame.
+    #[error(
+        "the scene has {0} edits that no update has placed yet: call Scene::update (or sync) before Culler::frame"
+    )]
+    PendingEdits(usize),
+    /// A policy that needs answers within the frame, on a backend that cannot block.
+    #[error(
+        "policy {policy} needs answers within the frame, and backend {backend} cannot wait for them: choose a policy that takes late answers"
+    )]
+    CannotBlock {
+        /// The policy.
+        policy: &'static str,
+        /// The backend.
+        backend: &'static str,
+    },
+    /// A policy of a name that does not exist.
+    #[error("there is no policy {name:?}; the policies are {known}")]
+    UnknownPolicy {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A dial that a policy or the tree does not have, or a value that it does not take.
+    #[error("cannot set {key}={value}: {why}")]
+    Dial {
+        /// The dial.
+        key: String,
+        /// The value asked for.
+        value: String,
+        /// What is wrong, and what would be right.
+        why: String,
+    },
+}

@@ -1,0 +1,12 @@
+//! Boxes, views, frustums and what a box looks like on the screen.
+//!
+//! Every bound in this folder rounds **outward**: a box may be found a little larger, nearer or
+//! more visible than it is, never the opposite.
+
+mod aabb;
+mod proxy;
+mod view;
+
+pub use aabb::Aabb;
+pub use proxy::{PixelRect, Proxy, Question};
+pub use view::{DepthDirection, DepthFormat, View, Viewport, projection};

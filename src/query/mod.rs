@@ -1,0 +1,101 @@
+//! Is it hidden? A backend owns the depth of one frame and answers questions about boxes.
+
+use crate::Error;
+use crate::geom::{Proxy, View};
+use crate::scene::ObjectSet;
+
+/// Names a question until it is answered; unique within a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Ticket(pub u32);
+
+/// What to find out about boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Want {
+    /// Whether at least one sample of at least one of the boxes passes the depth test.
+    Any,
+    /// How many samples of exactly one box pass the depth test, and how many it covers.
+    Dual,
+}
+
+/// An answer to a question.
+#[derive(Clone, Copy, Debug)]
+pub enum Answer<'a> {
+    /// To [`Want::Any`]: whether some sample is visible.
+    Any(bool),
+    /// To [`Want::Dual`].
+    Dual {
+        /// Samples that pass the depth test.
+        visible: u32,
+        /// Samples that the box covers in the viewport.
+        total: u32,
+    },
+    /// To a sweep: the objects that were found visible.
+    Swept(&'a ObjectSet),
+    /// The answer was lost: whatever was asked about is drawn.
+    Unknown,
+}
+
+impl Answer<'_> {
+    /// Whether what was asked about must be drawn, when up to `ignored` visible samples may be
+    /// given up (0 for exact).
+    pub fn is_visible(&self, ignored: u32) -> bool {
+        match *self {
+            Self::Any(visible) => visible,
+            Self::Dual { visible, .. } => visible > ignored,
+            Self::Swept(_) | Self::Unknown => true,
+        }
+    }
+}
+
+/// How long to wait for answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wait {
+    /// Deliver what has arrived.
+    Poll,
+    /// Deliver everything asked so far.
+    Block,
+}
+
+/// Owns the depth of the frame: draws go in, questions are answered against what was drawn so
+/// far. Nothing drawn later changes an answer to a question asked earlier.
+pub trait QueryBackend {
+    /// What the app's draw closure records into.
+    type Pass;
+
+    /// For statistics and messages.
+    fn name(&self) -> &'static str;
+
+    /// Whether [`Wait::Block`] works; false in a browser.
+    fn can_block(&self) -> bool;
+
+    /// Starts a frame: depth is cleared, questions of earlier frames are forgotten.
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn begin(&mut self, view: &View) -> Result<(), Error>;
+
+    /// Draws: `record` fills one pass.
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn draw(&mut self, record: impl FnOnce(&mut Self::Pass)) -> Result<(), Error>;
+
+    /// Asks about boxes, against everything drawn before. [`Want::Dual`] takes exactly one.
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error>;
+
+    /// Delivers answers, in any order; one a ticket. With [`Wait::Block`], all that are due.
+    ///
+    /// # Errors
+    /// What the device reports. Answers that an error swallowed are delivered as
+    /// [`Answer::Unknown`] first.
+    fn answers(&mut self, wait: Wait, deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error>;
+
+    /// Ends the frame.
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn end(&mut self) -> Result<(), Error>;
+}
