@@ -2,8 +2,10 @@
 
 mod error;
 
+pub mod draw;
 pub mod geom;
 pub mod query;
 pub mod scene;
+pub mod worlds;
 
 pub use error::Error;
