@@ -154,7 +154,8 @@ pub(crate) fn bin<const WITH_IDS: bool>(wave: &Wave<'_>, index: usize, chunk: &m
     keep::<WITH_IDS>(wave, &batch, filled, chunk);
 }
 
-/// Bins those of the first `count` triangles of a batch that may cover a sample.
+/// Bins those of the first `count` triangles of a batch that may cover a sample. The other lanes
+/// may hold anything, hence the wrapping arithmetic.
 #[inline(always)]
 fn keep<const WITH_IDS: bool>(wave: &Wave<'_>, batch: &TinyBatch, count: usize, chunk: &mut Chunk) {
     let mut empty = [0_i32; LANES];
@@ -173,8 +174,8 @@ fn keep<const WITH_IDS: bool>(wave: &Wave<'_>, batch: &TinyBatch, count: usize, 
         empty[i] = columns | rows;
         not_tiny[i] = (TINY_SIDE - 1 - columns)
             | (TINY_SIDE - 1 - rows)
-            | (SMALL_EXTENT - (right - left))
-            | (SMALL_EXTENT - (bottom - top));
+            | SMALL_EXTENT.wrapping_sub(right.wrapping_sub(left))
+            | SMALL_EXTENT.wrapping_sub(bottom.wrapping_sub(top));
     }
     let (mut kept, mut singles) = (0_u32, 0_u32);
     for i in 0..LANES {

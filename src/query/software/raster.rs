@@ -97,13 +97,13 @@ impl TinyBatch {
 /// The first sample column (or row) at or after a coordinate in subpixels.
 #[inline(always)]
 pub(crate) fn first_sample(v: i32) -> i32 {
-    (v + (SUBPIXELS / 2 - 1)) >> SUBPIXEL_BITS
+    v.wrapping_add(SUBPIXELS / 2 - 1) >> SUBPIXEL_BITS
 }
 
 /// The last sample column (or row) at or before a coordinate in subpixels.
 #[inline(always)]
 pub(crate) fn last_sample(v: i32) -> i32 {
-    (v - SUBPIXELS / 2) >> SUBPIXEL_BITS
+    v.wrapping_sub(SUBPIXELS / 2) >> SUBPIXEL_BITS
 }
 
 /// A sample's coordinate in subpixels.

@@ -83,8 +83,8 @@ impl Screen {
             + u32::from(!(z >= 0.0)) * CODE_Z
             + u32::from(!(sx.abs() <= GUARD_LIMIT && sy.abs() <= GUARD_LIMIT)) * CODE_GUARD;
         Vertex {
-            x: snap(sx) + self.width * (SUBPIXELS / 2),
-            y: snap(sy) + self.height * (SUBPIXELS / 2),
+            x: snap(sx).wrapping_add(self.width * (SUBPIXELS / 2)),
+            y: snap(sy).wrapping_add(self.height * (SUBPIXELS / 2)),
             nearness: self.sign * (z / w),
             code,
         }
