@@ -2,6 +2,9 @@
 
 use glam::Vec3;
 
+use super::shape::turn;
+use crate::geom::Aabb;
+
 /// Where a camera is and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -40,7 +43,10 @@ impl CameraPath {
     pub fn new(fov_y_degrees: f32, controls: impl IntoIterator<Item = (Vec3, Vec3)>) -> Self {
         let points: Vec<_> = controls.into_iter().map(|(eye, target)| Control { eye, target }).collect();
         assert!(!points.is_empty(), "a path needs a control point");
-        assert!(points.iter().all(|p| p.eye.is_finite() && p.target.is_finite()), "a control point is not finite");
+        assert!(
+            points.iter().all(|p| p.eye.is_finite() && p.target.is_finite()),
+            "a control point is not finite"
+        );
         let mut knots = vec![0.0];
         for pair in points.windows(2) {
             // Where only the target moves, its way counts, a quarter as much.
@@ -48,6 +54,22 @@ impl CameraPath {
             knots.push(knots[knots.len() - 1] + way.max(1e-3).sqrt());
         }
         Self { points, knots, fov_y_degrees }
+    }
+
+    /// Once around a box, a little above it, looking at its middle: for worlds without a way
+    /// through them. An empty box is circled as a point at the origin.
+    pub fn around(bounds: &Aabb) -> Self {
+        const POINTS: usize = 16;
+        let (center, half) = match bounds.is_empty() {
+            true => (Vec3::ZERO, Vec3::ZERO),
+            false => (bounds.center(), bounds.max * 0.5 - bounds.min * 0.5),
+        };
+        let radius = 1.5 * half.length() + 1.0;
+        let eye = |k| {
+            let (cos, sin) = turn(k, POINTS);
+            center + Vec3::new(radius * sin, 0.5 * radius, radius * cos)
+        };
+        Self::new(60.0, (0..=POINTS).map(|k| (eye(k), center)))
     }
 
     /// The pose at time `t`, 0 at the first point, 1 at the last; times outside are clamped, NaN

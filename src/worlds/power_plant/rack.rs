@@ -29,7 +29,8 @@ fn run(site: &mut Site, plan: &Plan, dice: &mut Dice, [j, k]: [i32; 2], lane: Ve
     let nx = plan.size.nx;
     let first = dice.below(nx / 2) as i32;
     let last = first + (nx / 3 + dice.below(nx)) as i32;
-    let kinds = [Part::PipeSmall, Part::PipeMedium, Part::PipeMedium, Part::PipeLarge, Part::CableTray, Part::Duct];
+    let kinds =
+        [Part::PipeSmall, Part::PipeMedium, Part::PipeMedium, Part::PipeLarge, Part::CableTray, Part::Duct];
     let kind = any(&kinds, dice);
     let color = match kind {
         Part::CableTray => STEEL,
@@ -39,7 +40,7 @@ fn run(site: &mut Site, plan: &Plan, dice: &mut Dice, [j, k]: [i32; 2], lane: Ve
     for i in first..last.min(nx as i32) {
         let bay = Bay { i, j, k };
         // In the high rooms pipes would hang in the air.
-        if matches!(plan.room(bay).used, Use::Hall | Use::Boiler) {
+        if matches!(plan.room(bay).used, Use::Hall | Use::Boiler | Use::Outside) {
             continue;
         }
         let middle = plan.size.center(bay) + lane;
