@@ -118,20 +118,25 @@ const STACK: usize = 64;
 #[inline(always)]
 pub(crate) fn any(scene: Scene<'_>, proxy: &Proxy) -> bool {
     let mut found = false;
-    walk(scene, proxy, |part, functions, verdict, (farthest, nearest), is_leaf| {
-        if verdict.entry_most < farthest {
-            return Step::Over;
-        }
-        if verdict.inside && verdict.entry_least >= nearest {
-            found = true;
-            return Step::Stop;
-        }
-        if !is_leaf {
-            return Step::Into;
-        }
-        found = samples(scene.depth, proxy, functions, part).0 > 0;
-        if found { Step::Stop } else { Step::Over }
-    });
+    walk(
+        scene,
+        proxy,
+        #[inline(always)]
+        |part, functions, verdict, (farthest, nearest), is_leaf| {
+            if verdict.entry_most < farthest {
+                return Step::Over;
+            }
+            if verdict.inside && verdict.entry_least >= nearest {
+                found = true;
+                return Step::Stop;
+            }
+            if !is_leaf {
+                return Step::Into;
+            }
+            found = samples(scene.depth, proxy, functions, part).0 > 0;
+            if found { Step::Stop } else { Step::Over }
+        },
+    );
     found
 }
 
@@ -139,25 +144,30 @@ pub(crate) fn any(scene: Scene<'_>, proxy: &Proxy) -> bool {
 #[inline(always)]
 pub(crate) fn dual(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
     let (mut visible, mut total) = (0, 0);
-    walk(scene, proxy, |part, functions, verdict, (farthest, nearest), is_leaf| {
-        let area = (part.x1 - part.x0) * (part.y1 - part.y0);
-        if verdict.inside && verdict.entry_most < farthest {
-            total += area;
-            return Step::Over;
-        }
-        if verdict.inside && verdict.entry_least >= nearest {
-            visible += area;
-            total += area;
-            return Step::Over;
-        }
-        if !is_leaf {
-            return Step::Into;
-        }
-        let (v, t) = samples(scene.depth, proxy, functions, part);
-        visible += v;
-        total += t;
-        Step::Over
-    });
+    walk(
+        scene,
+        proxy,
+        #[inline(always)]
+        |part, functions, verdict, (farthest, nearest), is_leaf| {
+            let area = (part.x1 - part.x0) * (part.y1 - part.y0);
+            if verdict.inside && verdict.entry_most < farthest {
+                total += area;
+                return Step::Over;
+            }
+            if verdict.inside && verdict.entry_least >= nearest {
+                visible += area;
+                total += area;
+                return Step::Over;
+            }
+            if !is_leaf {
+                return Step::Into;
+            }
+            let (v, t) = samples(scene.depth, proxy, functions, part);
+            visible += v;
+            total += t;
+            Step::Over
+        },
+    );
     (visible, total)
 }
 

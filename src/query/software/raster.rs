@@ -22,6 +22,19 @@ pub(crate) const SMALL_EXTENT: i32 = 128 << SUBPIXEL_BITS;
 /// The most sample columns or rows of a triangle that is rasterised among others, a lane each.
 pub(crate) const TINY_SIDE: i32 = 4;
 
+/// A bit for each lane.
+pub(crate) const ALL_LANES: u32 = (1 << LANES) - 1;
+
+/// A bit for each lane with a negative value.
+#[inline(always)]
+pub(crate) fn negative(values: &[i32; LANES]) -> u32 {
+    let mut bits = 0;
+    for (i, &value) in values.iter().enumerate() {
+        bits |= (value >> 31) & (1 << i);
+    }
+    bits as u32
+}
+
 /// Where samples go. The rows of a sink are those of one band.
 pub(crate) trait Sink {
     /// Whether the sink wants to know which triangle a sample belongs to.
@@ -296,10 +309,7 @@ pub(crate) fn tiny<S: Sink>(batch: &TinyBatch, count: usize, sink: &mut S) {
                 };
                 nearness[i] = shading.nearness(e[1] as f32, e[2] as f32);
             }
-            let mut covered = 0_u32;
-            for (i, &outside) in outside.iter().enumerate() {
-                covered |= u32::from(outside >= 0) << i;
-            }
+            let mut covered = negative(&outside) ^ ALL_LANES;
             while covered != 0 {
                 let i = covered.trailing_zeros() as usize;
                 covered &= covered - 1;
