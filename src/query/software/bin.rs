@@ -4,9 +4,8 @@ use glam::Mat4;
 
 use super::clip::clip;
 use super::pass::DrawCall;
-use super::raster::{
-    ALL_LANES, Id, LANES, SMALL_EXTENT, TINY_SIDE, TinyBatch, Triangle, first_sample, last_sample, negative,
-};
+use super::raster::{ALL_LANES, Id, LANES, TINY_SIDE, TinyBatch, Triangle, negative};
+use super::setup::{SMALL_EXTENT, first_sample, last_sample};
 use super::vertex::{CODE_W_MINUS_Z, CODE_Z, Screen, Vertex, clip_position};
 
 /// A draw call in a wave: where its vertices and triangles lie in the wave's buffers.
