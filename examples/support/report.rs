@@ -238,7 +238,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// Four digits after the point: a tenth of a microsecond.
-fn round(x: f64) -> f64 {
+pub fn round(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }
 

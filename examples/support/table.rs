@@ -1,86 +1,68 @@
-//! The summary in plain English, printed at the end.
+//! The summary in plain English, printed at the end. Figures are means per frame,
+//! unless they say otherwise.
 
 use comfy_table::{Table, presets};
 
 use super::report::Summary;
 
-/// The table, ready to print.
+/// The table, ready to print, less than 100 columns wide.
 pub fn table(summary: &Summary) -> Table {
     let mut table = Table::new();
     table.load_style(presets::UTF8_BORDERS_ONLY);
-    let mut row = |name: &str, value: String| {
+    for (name, value) in rows(summary) {
         table.add_row([name, &value]);
-    };
-    let s = summary;
+    }
+    table
+}
+
+/// What a figure is, and the figure.
+fn rows(s: &Summary) -> Vec<(&'static str, String)> {
     let [width, height] = s.viewport;
-    row("scene", format!("{}, seed {}", s.scene, s.seed));
-    row(
-        "in the world",
-        format!("{} objects, {} triangles", count(s.objects as f64), count(s.triangles as f64)),
-    );
-    row("policy, backend", format!("{} on {}, {width} × {height}, {} frames", s.policy, s.backend, s.frames));
-    let f = &s.frame_ms;
-    row(
-        "time a frame",
-        format!(
-            "{:.2} ms median, {:.2} mean, {:.2} at the 99th percentile, {:.2} worst",
-            f.median, f.mean, f.p99, f.max
-        ),
-    );
-    let t = &s.stage_ms;
-    row(
-        "  of which",
-        format!(
-            "sync {:.2} · tree {:.2} · policy {:.2} · draw {:.2} · query {:.2} · wait {:.2} ms",
-            t.sync, t.tree, t.policy, t.draw, t.query, t.wait
-        ),
-    );
-    row("in the view frustum", format!("{} objects a frame", count(s.in_frustum.mean)));
+    let (f, t) = (&s.frame_ms, &s.stage_ms);
     let saved = 100.0 * (1.0 - s.drawn.mean / s.in_frustum.mean.max(1.0));
-    row(
-        "drawn",
-        format!(
-            "{} objects a frame ({saved:.0} % of the frustum culled), {} triangles",
-            count(s.drawn.mean),
-            count(s.drawn_triangles.mean)
+    let mut rows = vec![
+        ("scene", format!("{}, seed {}", s.scene, s.seed)),
+        ("", format!("{} objects, {} triangles", count(s.objects as f64), count(s.triangles as f64))),
+        ("policy", format!("{} on {}, {width} × {height}, {} frames", s.policy, s.backend, s.frames)),
+        ("time a frame", format!("{:.2} ms median, {:.2} at the 99th percentile", f.median, f.p99)),
+        ("", format!("{:.2} mean, {:.2} to {:.2}", f.mean, f.min, f.max)),
+        ("mean by stage", format!("draw {:.2}, query {:.2}, wait {:.2}", t.draw, t.query, t.wait)),
+        ("", format!("sync {:.2}, tree {:.2}, policy {:.2}", t.sync, t.tree, t.policy)),
+        ("in the frustum", format!("{} objects", count(s.in_frustum.mean))),
+        (
+            "drawn",
+            format!(
+                "{} objects ({saved:.1} % of the frustum culled), {} triangles",
+                count(s.drawn.mean),
+                count(s.drawn_triangles.mean)
+            ),
         ),
-    );
+    ];
     if let (Some(exact), Some(boxes)) = (s.exact_visible, s.box_visible) {
-        row(
-            "really visible",
-            format!("{} objects a frame; {} by their boxes", count(exact.mean), count(boxes.mean)),
-        );
+        let boxes = count(boxes.mean);
+        rows.push(("really visible", format!("{} objects; {boxes} by their boxes", count(exact.mean))));
     }
     if let (Some(lost), Some(wrong)) = (s.false_culls, s.wrong_pixels) {
-        row(
-            "wrongly culled",
-            format!(
-                "{lost} objects in the whole run; {:.1} wrong pixels a frame, {:.0} at worst",
-                wrong.mean, wrong.max
-            ),
-        );
+        rows.push(("wrongly culled", format!("{lost} objects in the whole run")));
+        rows.push(("wrong pixels", format!("{:.1}, {:.0} at worst", wrong.mean, wrong.max)));
     }
-    row(
-        "questions asked",
-        format!(
-            "{:.1} a frame ({:.1} boxes) in {:.1} waves, {:.1} changes between drawing and asking",
-            s.queries.mean, s.query_boxes.mean, s.waves.mean, s.state_changes.mean
+    rows.extend([
+        (
+            "questions",
+            format!("{:.1} in {:.1} waves, about {:.1} boxes", s.queries.mean, s.waves.mean, s.query_boxes.mean),
         ),
-    );
-    row(
-        "tree",
-        format!(
-            "{} nodes, {} deep; a frame: {:.1} splits, {:.1} merges, {:.1} moves, {:.2} flips; {:.1} % of the time",
-            s.tree.nodes,
-            s.tree.depth,
-            s.tree.splits,
-            s.tree.merges,
-            s.tree.moves,
-            s.tree.flips,
-            100.0 * s.tree.maintenance_share
+        ("state changes", format!("{:.1} between drawing and asking", s.state_changes.mean)),
+        ("tree", format!("{} nodes, {} deep", s.tree.nodes, s.tree.depth)),
+        (
+            "tree's events",
+            format!(
+                "{:.1} splits, {:.1} merges, {:.2} flips, {:.1} objects moved",
+                s.tree.splits, s.tree.merges, s.tree.flips, s.tree.moves
+            ),
         ),
-    );
-    table
+        ("tree's share", format!("{:.1} % of the frame's time", 100.0 * s.tree.maintenance_share)),
+    ]);
+    rows
 }
 
 /// A whole number with thin groups of three: 18 200 413.

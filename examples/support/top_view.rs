@@ -1,12 +1,17 @@
 //! The last frame from above: what was drawn, what was culled, and the tree's cells.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use glam::{DVec4, Vec2};
 use plotters::prelude::*;
-use tercet::geom::{Aabb, View};
+use tercet::geom::{Aabb, Frustum, View};
+use tercet::scene::{ObjectId, Scene, SceneObject};
+use tercet::tree::Role;
 
 use super::canvas::{self, FAINT, INK, Key, Sheet, px, text};
+use super::report::Summary;
+use super::run::Eye;
 use super::table::count;
 
 const WIDTH: u32 = 1200;
@@ -22,7 +27,7 @@ const FRUSTUM: RGBColor = RGBColor(252, 204, 60);
 
 /// What became of an object in the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Fate {
+enum Fate {
     /// Its box does not meet the view frustum.
     Outside,
     /// Its box meets the frustum, and it was not drawn.
@@ -33,18 +38,51 @@ pub enum Fate {
 
 /// An object on the map.
 #[derive(Clone, Copy, Debug)]
-pub struct Mark {
+struct Mark {
     /// In world space, metres.
-    pub bounds: Aabb,
+    bounds: Aabb,
     /// What became of it.
-    pub fate: Fate,
+    fate: Fate,
     /// Whether a splitting plane of the tree cuts it.
-    pub straddles: bool,
+    straddles: bool,
+}
+
+/// Draws `top_view.png` into a folder that exists.
+pub fn write(out: &Path, summary: &Summary, scene: &Scene, view: &View, eye: &Eye) -> anyhow::Result<()> {
+    let tree = scene.tree();
+    let cells: Vec<Aabb> =
+        tree.nodes().filter(|n| n.is_leaf && n.role != Role::Straddle).map(|n| n.cell).collect();
+    let mut cut = HashSet::new();
+    let mut stack = vec![(tree.root(), false)];
+    while let Some((node, below_cut)) = stack.pop() {
+        let children = tree.children(node);
+        // A binary tree keeps what its planes cut in the inner nodes themselves.
+        if below_cut || children.is_some() {
+            cut.extend(tree.own(node).iter().flat_map(|block| block.slots).map(|slot| slot as usize));
+        }
+        for (i, child) in children.into_iter().flatten().enumerate() {
+            stack.push((child, below_cut || i == 2));
+        }
+    }
+    let drawn: HashSet<ObjectId> = eye.visible().iter().map(|object| object.id).collect();
+    let frustum = Frustum::new(view);
+    let mark = |object: SceneObject| {
+        let bounds = object.bounds?;
+        let fate = match drawn.contains(&object.object.id) {
+            true => Fate::Drawn,
+            false if frustum.intersects(&bounds) => Fate::Culled,
+            false => Fate::Outside,
+        };
+        Some(Mark { bounds, fate, straddles: cut.contains(&object.object.id.slot()) })
+    };
+    let marks = scene.objects().filter_map(mark).collect();
+    let subtitle = format!("{} · policy {}", summary.scene, summary.policy);
+    save(&out.join("top_view.png"), &subtitle, &cells, marks, view)
 }
 
 /// Draws the map: x to the right, z downward, as seen from y = +∞. `cells` are those of the
 /// tree's leaves.
-pub fn save(
+fn save(
     path: &Path,
     subtitle: &str,
     cells: &[Aabb],
