@@ -1,9 +1,19 @@
 //! Tercet: a dynamic-scene occlusion-culling engine.
 
+mod culler;
+mod dial;
 mod error;
+mod stats;
+mod tradeoff;
 
 pub mod geom;
+pub mod policy;
 pub mod query;
 pub mod scene;
+pub mod tree;
 
+pub use culler::{Culler, Voter};
+pub use dial::Dial;
 pub use error::Error;
+pub use stats::FrameStats;
+pub use tradeoff::Tradeoff;

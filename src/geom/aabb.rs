@@ -147,13 +147,13 @@ impl Aabb {
 }
 
 /// The greatest f32 that is not above `x`.
-fn f32_below(x: f64) -> f32 {
+pub(super) fn f32_below(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) > x { nearest.next_down() } else { nearest }
 }
 
 /// The least f32 that is not below `x`.
-fn f32_above(x: f64) -> f32 {
+pub(super) fn f32_above(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) < x { nearest.next_up() } else { nearest }
 }

@@ -4,9 +4,13 @@
 //! more visible than it is, never the opposite.
 
 mod aabb;
+mod frustum;
+mod project;
 mod proxy;
 mod view;
 
 pub use aabb::Aabb;
+pub use frustum::{Frustum, PlaneMask};
+pub use project::{Projected, ScreenRect, project};
 pub use proxy::{PixelRect, Proxy, Question};
 pub use view::{DepthDirection, DepthFormat, View, Viewport, projection};

@@ -235,10 +235,17 @@ impl View {
     /// the product of the absolute values; the model's own share is added by
     /// [`Aabb::transformed`](super::Aabb::transformed).
     pub fn clip_error(&self, p_abs: DVec3) -> DVec4 {
-        const GAMMA: f64 = 16.0 * (1.0 / 16_777_216.0);
-        self.magnitude * p_abs.extend(1.0) * GAMMA
+        self.magnitude * p_abs.extend(1.0) * CLIP_GAMMA
+    }
+
+    /// [`View::clip_error`] as a matrix: it is linear in `(|x|, |y|, |z|, 1)`.
+    pub(super) fn clip_error_matrix(&self) -> DMat4 {
+        self.magnitude * CLIP_GAMMA
     }
 }
+
+/// The relative error of [`View::clip_error`].
+const CLIP_GAMMA: f64 = 16.0 / 16_777_216.0;
 
 /// Projection matrices into `0 ≤ z ≤ w`. Angles in radians, distances in metres.
 pub mod projection {
@@ -299,12 +306,18 @@ fn absolute(m: DMat4) -> DMat4 {
 }
 
 fn invert(name: &'static str, m: DMat4) -> Result<DMat4, Error> {
-    // Scaled so that a projection of a far/near ratio of 1e9 is not mistaken for a singular one:
-    // the determinant is compared with the product of its rows' lengths.
-    let rows = (0..4).map(|i| m.row(i).length()).product::<f64>();
-    let determinant = m.determinant();
-    if !determinant.is_finite() || determinant.abs() <= rows * 1e-14 {
-        return Err(Error::Matrix { name, why: "is singular: it cannot be inverted" });
+    let singular = Error::Matrix { name, why: "is singular: it cannot be inverted" };
+    // A far/near ratio of 1e9 or an eye at 1e7 m makes columns and rows of very different size
+    // and no singular matrix. So first the columns, then the rows are scaled to length 1; the
+    // determinant of the result is the volume that they span, of at most 1.
+    let columns = [m.x_axis, m.y_axis, m.z_axis, m.w_axis].map(DVec4::normalize_or_zero);
+    let rows = DMat4::from_cols_array_2d(&columns.map(|c| c.to_array())).transpose();
+    let rows = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis].map(DVec4::normalize_or_zero);
+    let volume = DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).determinant().abs();
+    let inverse = m.inverse();
+    // Not `volume <= limit`: NaN must be refused too.
+    if !(volume > 1e-14 && inverse.is_finite()) {
+        return Err(singular);
     }
-    Ok(m.inverse())
+    Ok(inverse)
 }

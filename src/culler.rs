@@ -1,0 +1,284 @@
+//! The driver of one frame for one view: start reading here.
+//!
+//! A [`Culler`] asks its policy for one action after the other and carries each out on the
+//! backend: draws join the render queue, questions flush it first, answers go back to the policy.
+
+use std::time::{Duration, Instant};
+
+use crate::geom::{Frustum, PlaneMask, View};
+use crate::policy::{Action, Context, Extent, Policy};
+use crate::query::{QueryBackend, Wait};
+use crate::scene::{ObjectId, ObjectRef, Scene};
+use crate::stats::FrameStats;
+use crate::tree::{NodeId, Votes};
+use crate::{Error, Tradeoff};
+
+/// What one camera sees: a policy with its history, and the visible list of the last frame.
+#[derive(Debug)]
+pub struct Culler<P> {
+    policy: P,
+    /// Speed against accuracy; exact by default.
+    pub tradeoff: Tradeoff,
+    frame: u32,
+    /// The scene that the history is about; 0 for none yet.
+    scene: u64,
+    drawn: DrawnList,
+    votes: Votes,
+    /// Reused by walks through the tree.
+    stack: Vec<(NodeId, PlaneMask)>,
+}
+
+impl<P: Policy> Culler<P> {
+    /// A view that has seen nothing yet.
+    pub fn new(policy: P) -> Self {
+        Self {
+            policy,
+            tradeoff: Tradeoff::EXACT,
+            frame: 0,
+            scene: 0,
+            drawn: DrawnList::default(),
+            votes: Votes::default(),
+            stack: Vec::new(),
+        }
+    }
+
+    /// Draws one frame of the scene, without what is hidden.
+    ///
+    /// `draw` is called with the objects to draw, several times a frame: each call is a pass of
+    /// its own, and no state survives from one to the next. Objects that are no occluders come in
+    /// the last call. No object is handed out twice.
+    ///
+    /// # Errors
+    /// [`Error::PendingEdits`] if the scene was edited since its last update;
+    /// [`Error::CannotBlock`] if the policy needs answers that the backend cannot wait for; and
+    /// what the backend reports. The frame is then incomplete.
+    pub fn frame<B: QueryBackend>(
+        &mut self,
+        scene: &Scene,
+        view: &View,
+        queries: &mut B,
+        mut draw: impl FnMut(&mut B::Pass, &[ObjectRef]),
+    ) -> Result<FrameStats, Error> {
+        let start = Instant::now();
+        scene.check_updated()?;
+        if self.policy.needs_blocking() && !queries.can_block() {
+            return Err(Error::CannotBlock { policy: self.policy.name(), backend: queries.name() });
+        }
+        if self.scene != scene.id() {
+            self.scene = scene.id();
+            self.policy.reset();
+            self.votes.clear();
+        }
+        self.frame = self.frame.wrapping_add(1);
+        self.drawn.begin(scene, self.frame);
+        let frustum = Frustum::new(view);
+        let tradeoff = self.tradeoff;
+        let cx =
+            Context { tree: scene.tree(), view, frustum: &frustum, frame: self.frame, tradeoff: &tradeoff };
+        let mut stats = FrameStats::default();
+        queries.begin(view)?;
+        for &slot in scene.objects_store().always() {
+            self.drawn.queue(scene, slot);
+        }
+        self.policy.begin(&cx);
+        loop {
+            match self.policy.next(&cx) {
+                Action::Draw(node, extent) => {
+                    self.drawn.queue_node(scene, &cx, &mut self.stack, node, extent)
+                }
+                Action::DrawObjects(objects) => self.drawn.queue_objects(scene, objects),
+                Action::Ask { ticket, boxes, want } => {
+                    if self.drawn.flush(queries, &mut draw, &mut stats)? || stats.queries == 0 {
+                        // From drawing to asking, and back before the next draw.
+                        stats.state_changes += 2;
+                    }
+                    stats.queries += 1;
+                    stats.query_boxes += boxes.len() as u32;
+                    stats.query += timed(|| queries.ask(ticket, boxes, want))?;
+                }
+                Action::Wait(wait) => {
+                    stats.waves += u32::from(wait == Wait::Block);
+                    let policy = &mut self.policy;
+                    stats.wait +=
+                        timed(|| queries.answers(wait, |ticket, answer| policy.answer(&cx, ticket, answer)))?;
+                }
+                Action::Done => break,
+            }
+        }
+        self.drawn.flush(queries, &mut draw, &mut stats)?;
+        self.drawn.flush_late(queries, &mut draw, &mut stats)?;
+        queries.end()?;
+        self.policy.vote(&mut self.votes);
+        stats.drawn = self.drawn.visible.len() as u32;
+        stats.policy = start.elapsed().saturating_sub(stats.draw + stats.query + stats.wait);
+        Ok(stats)
+    }
+}
+
+impl<P> Culler<P> {
+    /// The objects drawn in the last frame, in the order of drawing.
+    pub fn visible(&self) -> &[ObjectRef] {
+        &self.drawn.visible
+    }
+
+    /// Those of them that the frame before had not drawn.
+    pub fn entered(&self) -> &[ObjectRef] {
+        &self.drawn.entered
+    }
+
+    /// What the frame before had drawn and the last one has not; removed objects included.
+    pub fn left(&self) -> impl Iterator<Item = ObjectRef> {
+        self.drawn.left()
+    }
+
+    /// The policy, to read.
+    pub fn policy(&self) -> &P {
+        &self.policy
+    }
+
+    /// The policy, to set its dials.
+    pub fn policy_mut(&mut self) -> &mut P {
+        &mut self.policy
+    }
+}
+
+/// A view that votes on the tree's shape; see [`Scene::adapt`].
+pub trait Voter {
+    /// Its answers since the last adaptation.
+    fn votes(&self) -> &Votes;
+
+    /// The same, to empty.
+    fn votes_mut(&mut self) -> &mut Votes;
+}
+
+impl<P> Voter for Culler<P> {
+    fn votes(&self) -> &Votes {
+        &self.votes
+    }
+
+    fn votes_mut(&mut self) -> &mut Votes {
+        &mut self.votes
+    }
+}
+
+/// The render queue, and the lists of what it has drawn.
+#[derive(Debug, Default)]
+struct DrawnList {
+    /// To be drawn with the next flush.
+    queue: Vec<ObjectRef>,
+    /// No occluders: to be drawn last.
+    late: Vec<ObjectRef>,
+    visible: Vec<ObjectRef>,
+    entered: Vec<ObjectRef>,
+    previous: Vec<ObjectRef>,
+    /// By slot: which object was last drawn, and in which frame.
+    last_drawn: Vec<(u32, u32)>,
+    frame: u32,
+}
+
+impl DrawnList {
+    fn begin(&mut self, scene: &Scene, frame: u32) {
+        self.frame = frame;
+        self.queue.clear();
+        self.late.clear();
+        self.entered.clear();
+        std::mem::swap(&mut self.visible, &mut self.previous);
+        self.visible.clear();
+        let bound = scene.slot_bound().max(self.last_drawn.len());
+        self.last_drawn.resize(bound, (0, 0));
+    }
+
+    /// Queues an object, unless it was queued in this frame before.
+    fn queue(&mut self, scene: &Scene, slot: u32) {
+        let store = scene.objects_store();
+        let object = store.object(slot);
+        let last = &mut self.last_drawn[slot as usize];
+        let (generation, frame) = std::mem::replace(last, (object.id.generation(), self.frame));
+        if frame == self.frame {
+            return;
+        }
+        if generation != object.id.generation() || frame == 0 || frame != self.frame.wrapping_sub(1) {
+            self.entered.push(object);
+        }
+        let list = if store.is_occluder(slot) { &mut self.queue } else { &mut self.late };
+        list.push(object);
+    }
+
+    fn queue_objects(&mut self, scene: &Scene, objects: &[ObjectId]) {
+        for &id in objects {
+            if let Some(slot) = scene.objects_store().slot(id) {
+                self.queue(scene, slot);
+            }
+        }
+    }
+
+    fn queue_node(
+        &mut self,
+        scene: &Scene,
+        cx: &Context<'_>,
+        stack: &mut Vec<(NodeId, PlaneMask)>,
+        node: NodeId,
+        extent: Extent,
+    ) {
+        let planes = if extent == Extent::Everything { PlaneMask::NONE } else { PlaneMask::ALL };
+        stack.push((node, planes));
+        while let Some((node, mask)) = stack.pop() {
+            if cx.tree.count(node) == 0 {
+                continue;
+            }
+            let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), mask) else { continue };
+            for block in cx.tree.own(node) {
+                let outside = cx.frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
+                for (lane, &slot) in block.slots.iter().enumerate() {
+                    if slot != u32::MAX && outside & (1 << lane) == 0 {
+                        self.queue(scene, slot);
+                    }
+                }
+            }
+            if extent != Extent::Own {
+                let children = cx.tree.children(node).into_iter().flatten();
+                stack.extend(children.map(|child| (child, mask)));
+            }
+        }
+    }
+
+    /// Draws what is queued; true if there was something.
+    fn flush<B: QueryBackend>(
+        &mut self,
+        queries: &mut B,
+        draw: &mut impl FnMut(&mut B::Pass, &[ObjectRef]),
+        stats: &mut FrameStats,
+    ) -> Result<bool, Error> {
+        if self.queue.is_empty() {
+            return Ok(false);
+        }
+        stats.draw += timed(|| queries.draw(|pass| draw(pass, &self.queue)))?;
+        self.visible.append(&mut self.queue);
+        Ok(true)
+    }
+
+    /// Draws what hides nothing, after everything else.
+    fn flush_late<B: QueryBackend>(
+        &mut self,
+        queries: &mut B,
+        draw: &mut impl FnMut(&mut B::Pass, &[ObjectRef]),
+        stats: &mut FrameStats,
+    ) -> Result<bool, Error> {
+        std::mem::swap(&mut self.queue, &mut self.late);
+        self.flush(queries, draw, stats)
+    }
+
+    fn left(&self) -> impl Iterator<Item = ObjectRef> {
+        self.previous
+            .iter()
+            .copied()
+            .filter(|object| self.last_drawn[object.id.slot()] != (object.id.generation(), self.frame))
+    }
+}
+
+/// Runs something and returns the time that it took.
+fn timed<E>(f: impl FnOnce() -> Result<(), E>) -> Result<Duration, E> {
+    let start = Instant::now();
+    f()?;
+    Ok(start.elapsed())
+}

@@ -1,0 +1,209 @@
+//! The six planes of a view: is a box outside all that the view can show?
+//!
+//! A box is *outside* only if no geometry within it can own a sample of the viewport, whatever
+//! rounding the app's vertex shader and the rasteriser's snapping do. Each plane is a linear form
+//! `f(p) = n·p + d` that is ≥ 0 for visible points (Gribb and Hartmann, *Fast Extraction of
+//! Viewing Frustum Planes*, 2001). It is widened by three amounts:
+//!
+//! * The side planes are pushed outward by the pixels that snapping can move a vertex: instead
+//!   of `x + w ≥ 0`, the left one is `x + (1 + k)·w ≥ 0` with `k` that many pixels in normalised
+//!   device coordinates. A clip-space point that fails it and has `w > 0` lies more than that
+//!   left of the viewport; one that has `w ≤ 0` is cut off by the near plane.
+//! * The app's own float error: each clip coordinate of a point errs by at most
+//!   [`View::clip_error`], which is linear in `|p|`. Twice that is allowed, so that the rounding
+//!   of clipping and this module's f64 set-up are paid for too.
+//! * The f32 error of the test itself: three products and three sums, below `4.1·2⁻²⁴` of the sum
+//!   of the magnitudes; `8·2⁻²⁴` is allowed.
+//!
+//! Together they make a slack `s·|p| + e`, so a box may be called outside only if
+//! `Σ max(nᵢpᵢ + sᵢ|pᵢ|) + d + e < 0`, each maximum over the box's interval on axis `i`. Since
+//! `nᵢp + sᵢ|p| = max((nᵢ + sᵢ)p, (nᵢ − sᵢ)p)`, the test needs two products an axis and the signs
+//! of the two coefficients choose the corners once a plane, not once a box.
+
+use glam::DVec4;
+
+use super::aabb::{f32_above, f32_below};
+use super::project::{CLIP_SHARE, UNIT, pixel_slack};
+use super::{Aabb, View};
+
+/// Some of a frustum's planes: those that a node's box crosses, which its children must still be
+/// tested against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlaneMask(u8);
+
+impl PlaneMask {
+    /// All six planes: what a traversal starts with.
+    pub const ALL: Self = Self(0b11_1111);
+    /// No plane: the box is inside of all of them, and so is everything in it.
+    pub const NONE: Self = Self(0);
+
+    /// Whether no plane is left to be tested.
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    fn indices(self) -> impl Iterator<Item = usize> {
+        (0..6).filter(move |i| self.0 & (1 << i) != 0)
+    }
+}
+
+/// The six widened planes of a view.
+#[derive(Clone, Debug)]
+pub struct Frustum {
+    planes: [Plane; 6],
+}
+
+impl Frustum {
+    /// The planes of a view: left, right, bottom, top, and the two of depth. A far plane at
+    /// infinity is a form without a normal, which no box is outside of.
+    pub fn new(view: &View) -> Self {
+        let m = view.clip_from_world();
+        let (x, y, z, w) = (m.row(0), m.row(1), m.row(2), m.row(3));
+        let error = view.clip_error_matrix();
+        let (ex, ey, ez, ew) = (error.row(0), error.row(1), error.row(2), error.row(3));
+        let viewport = view.viewport();
+        let side = |origin: u32, length: u32| {
+            let half = 0.5 * f64::from(length);
+            1.0 + pixel_slack(origin, length, 0.0) / half
+        };
+        let (kx, ky) = (side(viewport.x, viewport.width), side(viewport.y, viewport.height));
+        // `w − z ≥ 0` is the near plane under reversed z and the far one under standard z: the two
+        // are the same planes either way.
+        Self {
+            planes: [
+                Plane::new(w * kx + x, ew * kx + ex),
+                Plane::new(w * kx - x, ew * kx + ex),
+                Plane::new(w * ky + y, ew * ky + ey),
+                Plane::new(w * ky - y, ew * ky + ey),
+                Plane::new(w - z, ew + ez),
+                Plane::new(z, ez),
+            ],
+        }
+    }
+
+    /// Tests a box against the planes of `mask`: `None` if it is outside, else the planes that
+    /// it crosses. The planes that are left out have the box entirely inside, hence everything in
+    /// it, hence children need only the mask returned.
+    ///
+    /// An invalid box (NaN, inverted) is never outside.
+    pub fn classify(&self, aabb: &Aabb, mask: PlaneMask) -> Option<PlaneMask> {
+        let mut crossed = PlaneMask::NONE;
+        for i in mask.indices() {
+            let plane = &self.planes[i];
+            if plane.greatest(aabb) < 0.0 && aabb.is_valid() {
+                return None;
+            }
+            // Not `least < 0`: NaN stays in the mask.
+            if !(plane.least(aabb) >= 0.0) {
+                crossed.0 |= 1 << i;
+            }
+        }
+        Some(crossed)
+    }
+
+    /// Whether a box may own a sample: false only if it is certain not to.
+    pub fn intersects(&self, aabb: &Aabb) -> bool {
+        !(aabb.is_valid() && self.planes.iter().any(|plane| plane.greatest(aabb) < 0.0))
+    }
+
+    /// Tests N boxes at once against the planes of `mask`; `min[axis][lane]`. Bit `lane` of the
+    /// result is set if that box is outside. Never set for an invalid box.
+    ///
+    /// The same arithmetic as [`Frustum::classify`], in loops over lanes that the compiler turns
+    /// into vector instructions.
+    pub fn outside_lanes<const N: usize>(
+        &self,
+        min: [&[f32; N]; 3],
+        max: [&[f32; N]; 3],
+        mask: PlaneMask,
+    ) -> u32 {
+        const { assert!(N <= 32, "the result has 32 bits") };
+        let mut outside = [0u32; N];
+        for i in mask.indices() {
+            let plane = &self.planes[i];
+            let pick = |axis: usize, k: f32| if k >= 0.0 { max[axis] } else { min[axis] };
+            let [ux, uy, uz] = plane.upper;
+            let [lx, ly, lz] = plane.lower;
+            let (xu, yu, zu) = (pick(0, ux), pick(1, uy), pick(2, uz));
+            let (xl, yl, zl) = (pick(0, lx), pick(1, ly), pick(2, lz));
+            for lane in 0..N {
+                let x = greater(ux * xu[lane], lx * xl[lane]);
+                let y = greater(uy * yu[lane], ly * yl[lane]);
+                let z = greater(uz * zu[lane], lz * zl[lane]);
+                outside[lane] |= u32::from(((x + y) + z) + plane.outer < 0.0);
+            }
+        }
+        let mut bits = 0;
+        for lane in 0..N {
+            let valid = (0..3).fold(1, |all, axis| all & u32::from(min[axis][lane] <= max[axis][lane]));
+            bits |= (outside[lane] & valid) << lane;
+        }
+        bits
+    }
+}
+
+/// A linear form and its slack, scaled so that no sum of three products overflows.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    /// n + s, rounded up.
+    upper: [f32; 3],
+    /// n − s, rounded down.
+    lower: [f32; 3],
+    /// d + e, rounded up: for "outside".
+    outer: f32,
+    /// d − e, rounded down: for "inside".
+    inner: f32,
+}
+
+impl Plane {
+    /// From the coefficients of `n·p + d` and of the app's error in it.
+    fn new(form: DVec4, app_error: DVec4) -> Self {
+        let slack = app_error * CLIP_SHARE;
+        let slack = slack + (form.abs() + slack) * (8.0 * UNIT);
+        let largest = (form.abs() + slack).max_element();
+        // A power of two, so that the scaling is exact; 1/8 of the largest f32 three times over,
+        // plus a constant of 1/8, cannot overflow.
+        let scale = 0.125 / power_of_two_below(largest);
+        let (form, slack) = (form * scale, slack * scale);
+        let (upper, lower) = (form + slack, form - slack);
+        let tiny = f64::from(f32::MIN_POSITIVE);
+        Self {
+            upper: [f32_above(upper.x), f32_above(upper.y), f32_above(upper.z)],
+            lower: [f32_below(lower.x), f32_below(lower.y), f32_below(lower.z)],
+            outer: f32_above(upper.w + tiny),
+            inner: f32_below(lower.w - tiny),
+        }
+    }
+
+    /// An upper bound of the form over a box. In the order of [`Frustum::outside_lanes`].
+    fn greatest(&self, aabb: &Aabb) -> f32 {
+        let term = |axis: usize| {
+            let corner = |k: f32| if k >= 0.0 { aabb.max[axis] } else { aabb.min[axis] };
+            let (u, l) = (self.upper[axis], self.lower[axis]);
+            greater(u * corner(u), l * corner(l))
+        };
+        ((term(0) + term(1)) + term(2)) + self.outer
+    }
+
+    /// A lower bound of the form over a box.
+    fn least(&self, aabb: &Aabb) -> f32 {
+        let term = |axis: usize| {
+            let corner = |k: f32| if k >= 0.0 { aabb.min[axis] } else { aabb.max[axis] };
+            let (u, l) = (self.upper[axis], self.lower[axis]);
+            -greater(-(u * corner(u)), -(l * corner(l)))
+        };
+        ((term(0) + term(1)) + term(2)) + self.inner
+    }
+}
+
+/// One vector instruction, unlike `f32::max`, which must also sort out NaN; validity is tested
+/// apart.
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The greatest power of two that is not above a positive normal number; 1 for others.
+fn power_of_two_below(x: f64) -> f64 {
+    let exponent = x.to_bits() & f64::INFINITY.to_bits();
+    if x.is_normal() { f64::from_bits(exponent) } else { 1.0 }
+}

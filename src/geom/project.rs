@@ -1,0 +1,246 @@
+//! A box on the screen: where it may show, and how near and far it is.
+//!
+//! Everything here is taken in f64 and rounded outward at the end. The error that is allowed for
+//! is the app's: it transforms in f32 ([`View::clip_error`]) and its rasteriser snaps vertices to
+//! a grid of as little as 4 subpixel bits. The proof is in [`proxy`](super::Proxy)'s module.
+
+use glam::{DVec2, DVec4, Vec2};
+
+use super::aabb::{f32_above, f32_below};
+use super::proxy::PixelRect;
+use super::{Aabb, DepthDirection, DepthFormat, View};
+
+/// Half of the distance from 1 to the next f32: the relative error of one rounding.
+pub(super) const UNIT: f64 = 1.0 / 16_777_216.0;
+
+/// How many times [`View::clip_error`] is allowed for: once for the app's vertices, once for the
+/// vertices that clipping makes of them and for the f64 arithmetic here.
+pub(super) const CLIP_SHARE: f64 = 2.0;
+
+/// The farthest that snapping moves a vertex along an axis, in pixels: one step of the coarsest
+/// grid that Vulkan allows (`subPixelPrecisionBits` = 4).
+const SNAP: f64 = 1.0 / 16.0;
+
+/// Where a box lies on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projected {
+    /// No part of it can own a sample.
+    Outside,
+    /// It crosses the near plane, holds the eye, or is so near that f32 cannot say: it may show
+    /// anywhere.
+    Near,
+    /// All of it lies ahead.
+    Rect(ScreenRect),
+}
+
+/// A rectangle of the viewport, in pixels, and a range of nearness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenRect {
+    /// The upper left corner, within the viewport.
+    pub min: Vec2,
+    /// The lower right corner, within the viewport.
+    pub max: Vec2,
+    /// No sample of the box is nearer.
+    pub nearest: f32,
+    /// No sample of the box is farther.
+    pub farthest: f32,
+}
+
+impl ScreenRect {
+    /// In square pixels.
+    pub fn area(&self) -> f32 {
+        let size = self.max - self.min;
+        size.x * size.y
+    }
+
+    /// Whether the rectangles share a point; touching ones do.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && self.max.cmpge(other.min).all()
+    }
+}
+
+/// A rectangle that every sample of the box lies in, and the range of its nearness. About 50 ns.
+///
+/// An invalid box is [`Projected::Near`].
+pub fn project(aabb: &Aabb, view: &View) -> Projected {
+    let screen = match place(aabb, view) {
+        Placement::Outside => return Projected::Outside,
+        Placement::Near => return Projected::Near,
+        Placement::Ahead(screen) => screen,
+    };
+    let viewport = view.viewport();
+    let size = DVec2::new(f64::from(viewport.width), f64::from(viewport.height));
+    let (min, max) = (screen.min - screen.reach, screen.max + screen.reach);
+    if max.cmplt(DVec2::ZERO).any() || min.cmpgt(size).any() {
+        return Projected::Outside;
+    }
+    let (min, max) = (min.max(DVec2::ZERO), max.min(size));
+    Projected::Rect(ScreenRect {
+        min: Vec2::new(f32_below(min.x), f32_below(min.y)),
+        max: Vec2::new(f32_above(max.x), f32_above(max.y)),
+        nearest: f32_above(screen.nearest + screen.depth_error),
+        farthest: f32_below(screen.farthest - screen.depth_error),
+    })
+}
+
+/// What [`place`] finds.
+pub(super) enum Placement {
+    /// As [`Projected::Outside`], though boxes beside the viewport may be [`Placement::Ahead`].
+    Outside,
+    /// As [`Projected::Near`].
+    Near,
+    /// All corners are certain to lie before the near plane.
+    Ahead(Screen),
+}
+
+/// The projected corners of a box in screen space (pixels of the viewport, y down; nearness), and
+/// how far from their hull a sample of geometry in the box may lie.
+pub(super) struct Screen {
+    pub(super) x: [f64; 8],
+    pub(super) y: [f64; 8],
+    pub(super) nearness: [f64; 8],
+    pub(super) min: DVec2,
+    pub(super) max: DVec2,
+    /// The design's r, an axis: a pixel whose sample the geometry owns has its centre this near
+    /// to the hull.
+    pub(super) reach: DVec2,
+    /// How much nearer (or farther) than the hull the stored depth of such a sample may be.
+    pub(super) depth_error: f64,
+    pub(super) nearest: f64,
+    pub(super) farthest: f64,
+}
+
+impl Screen {
+    /// The pixels whose centres lie within reach, clipped to the viewport; `None` for none.
+    pub(super) fn pixels(&self, view: &View) -> Option<PixelRect> {
+        let viewport = view.viewport();
+        let first = |low: f64| (low - 0.5).ceil().max(0.0) as u32;
+        let end = |high: f64, size: u32| ((high - 0.5).floor() + 1.0).clamp(0.0, f64::from(size)) as u32;
+        let (min, max) = (self.min - self.reach, self.max + self.reach);
+        let rect = PixelRect {
+            x0: first(min.x),
+            y0: first(min.y),
+            x1: end(max.x, viewport.width),
+            y1: end(max.y, viewport.height),
+        };
+        (rect.x0 < rect.x1 && rect.y0 < rect.y1).then_some(rect)
+    }
+}
+
+/// Projects the eight corners.
+pub(super) fn place(aabb: &Aabb, view: &View) -> Placement {
+    if !aabb.is_valid() {
+        return Placement::Near;
+    }
+    let (low, high) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
+    let m = view.clip_from_world();
+    let clip: [[f64; 8]; 4] = std::array::from_fn(|row| {
+        let k = m.row(row);
+        let (x, y, z) =
+            ([low.x * k.x, high.x * k.x], [low.y * k.y, high.y * k.y], [low.z * k.z, high.z * k.z]);
+        std::array::from_fn(|i| (x[i & 1] + y[i >> 1 & 1]) + (z[i >> 2] + k.w))
+    });
+    let [x, y, z, w] = &clip;
+    // Products that underflow in f32 lose at most the least normal number each.
+    let tiny = 16.0 * f64::from(f32::MIN_POSITIVE);
+    let error = view.clip_error(low.abs().max(high.abs())) * CLIP_SHARE + DVec4::splat(tiny);
+
+    let before_near: [f64; 8] = match view.depth() {
+        DepthDirection::Reversed => std::array::from_fn(|i| w[i] - z[i]),
+        DepthDirection::Standard => *z,
+    };
+    let before_far: [f64; 8] = match view.depth() {
+        DepthDirection::Reversed => *z,
+        DepthDirection::Standard => std::array::from_fn(|i| w[i] - z[i]),
+    };
+    // Generous to whichever of the two planes is `z`.
+    let plane_error = error.w + error.z;
+    if greatest(&before_near) < -plane_error || greatest(&before_far) < -plane_error {
+        return Placement::Outside;
+    }
+    let w_min = least(w);
+    if !(w_min > 4.0 * error.w && least(&before_near) > plane_error) {
+        return if beside(x, y, w, error, view) { Placement::Outside } else { Placement::Near };
+    }
+
+    let viewport = view.viewport();
+    let half = DVec2::new(0.5 * f64::from(viewport.width), 0.5 * f64::from(viewport.height));
+    let sign = match view.depth() {
+        DepthDirection::Reversed => 1.0,
+        DepthDirection::Standard => -1.0,
+    };
+    let inverse: [f64; 8] = std::array::from_fn(|i| 1.0 / w[i]);
+    let screen_x: [f64; 8] = std::array::from_fn(|i| half.x + half.x * (x[i] * inverse[i]));
+    let screen_y: [f64; 8] = std::array::from_fn(|i| half.y - half.y * (y[i] * inverse[i]));
+    let nearness: [f64; 8] = std::array::from_fn(|i| sign * (z[i] * inverse[i]));
+    let min = DVec2::new(least(&screen_x), least(&screen_y));
+    let max = DVec2::new(greatest(&screen_x), greatest(&screen_y));
+    let (nearest, farthest) = (greatest(&nearness), least(&nearness));
+
+    let far_out = min.abs().max(max.abs());
+    let snapped = DVec2::new(
+        pixel_slack(viewport.x, viewport.width, far_out.x),
+        pixel_slack(viewport.y, viewport.height, far_out.y),
+    );
+    let w_low = w_min - error.w;
+    let moved = (half * DVec2::new(error.x, error.y) + (half + snapped) * error.w) / w_low;
+    let within_pixel = if view.samples() > 1 { 0.5 } else { 0.0 };
+    let magnitude = nearest.abs().max(farthest.abs());
+    Placement::Ahead(Screen {
+        x: screen_x,
+        y: screen_y,
+        nearness,
+        min,
+        max,
+        reach: snapped + moved + DVec2::splat(within_pixel),
+        depth_error: depth_error(magnitude, error, w_low) + depth_step(magnitude, view.format()),
+        nearest,
+        farthest,
+    })
+}
+
+/// How far, in pixels, snapping and the rounding of the viewport transform can move geometry and
+/// proxy along one axis together, for vertices up to `far_out` pixels from the viewport's corner.
+///
+/// The viewport transform rounds four times at most, each time by half a unit in the last place
+/// of a number no greater than `far_out`, or the viewport's end in the target.
+pub(super) fn pixel_slack(origin: u32, length: u32, far_out: f64) -> f64 {
+    2.0 * SNAP + 8.0 * UNIT * (far_out + f64::from(origin) + f64::from(length))
+}
+
+/// How much the f32 depth of geometry may differ from the exact one: see the proof in the proxy's
+/// module.
+fn depth_error(magnitude: f64, error: DVec4, w_low: f64) -> f64 {
+    const INTERPOLATION: f64 = 16.0 * UNIT;
+    (4.0 / 3.0) * (error.z + magnitude * error.w) / w_low + INTERPOLATION * magnitude
+}
+
+/// One step of the depth format, with the rounding of what is stored and read.
+fn depth_step(magnitude: f64, format: DepthFormat) -> f64 {
+    match format {
+        DepthFormat::Depth32Float => 2.0 * UNIT * magnitude + f64::from(f32::MIN_POSITIVE),
+        // One step is 1/(2²⁴ − 1); converting it to f32 rounds by up to another half.
+        DepthFormat::Depth24Plus => 2.0 * UNIT,
+    }
+}
+
+/// Whether all of a box that may reach behind the eye lies outside one side of the view.
+fn beside(x: &[f64; 8], y: &[f64; 8], w: &[f64; 8], error: DVec4, view: &View) -> bool {
+    let viewport = view.viewport();
+    let outside = |v: &[f64; 8], v_error: f64, origin: u32, length: u32| {
+        let k = 1.0 + 2.0 * pixel_slack(origin, length, 0.0) / f64::from(length);
+        let slack = v_error + k * error.w;
+        (0..8).all(|i| v[i] + k * w[i] < -slack) || (0..8).all(|i| k * w[i] - v[i] < -slack)
+    };
+    outside(x, error.x, viewport.x, viewport.width) || outside(y, error.y, viewport.y, viewport.height)
+}
+
+/// The least of eight numbers, none of them NaN.
+pub(super) fn least(v: &[f64; 8]) -> f64 {
+    v.iter().fold(f64::INFINITY, |a, &b| if b < a { b } else { a })
+}
+
+/// The greatest of eight numbers, none of them NaN.
+pub(super) fn greatest(v: &[f64; 8]) -> f64 {
+    v.iter().fold(f64::NEG_INFINITY, |a, &b| if b > a { b } else { a })
+}

@@ -1,0 +1,190 @@
+//! What to ask: one paper a file, each a pure, deterministic state machine.
+//!
+//! A policy draws nothing and waits for nothing. It reads the tree and its own history, and says
+//! one [`Action`] at a time: draw this, ask that, wait, done. The driver
+//! ([`Culler`](crate::Culler)) carries it out on whatever backend there is. So each policy runs on
+//! each backend, is tested without one, and a recorded frame replays bit for bit.
+
+mod dual_query;
+mod exact;
+mod frustum;
+mod history;
+mod none;
+mod order;
+
+pub use dual_query::DualQuery;
+pub use exact::Exact;
+pub use frustum::FrustumOnly;
+pub use history::{History, NodeState};
+pub use none::DrawAll;
+pub use order::ScreenTiles;
+
+use crate::dial::{self, Dial};
+use crate::geom::{Frustum, Proxy, View};
+use crate::query::{Answer, Ticket, Want};
+use crate::scene::ObjectId;
+use crate::tree::{NodeId, Tree, Votes};
+use crate::{Error, Tradeoff};
+
+/// What a policy may look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Context<'a> {
+    /// Where things are.
+    pub tree: &'a Tree,
+    /// The camera.
+    pub view: &'a View,
+    /// Its frustum.
+    pub frustum: &'a Frustum,
+    /// Frames of this view so far, from 1.
+    pub frame: u32,
+    /// Speed against accuracy.
+    pub tradeoff: &'a Tradeoff,
+}
+
+/// Which objects of a node are meant. Only those that meet the frustum are drawn, unless it says
+/// otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// The node's own.
+    Own,
+    /// The node's own and all below.
+    Subtree,
+    /// As [`Extent::Subtree`], but whether they meet the frustum or not.
+    Everything,
+}
+
+/// How long the driver is to wait for answers.
+pub use crate::query::Wait;
+
+/// What a policy wants next.
+#[derive(Debug)]
+pub enum Action<'p> {
+    /// Draw objects of a node. Draws join the render queue, which is flushed just before questions
+    /// go out.
+    Draw(NodeId, Extent),
+    /// Draw these objects.
+    DrawObjects(&'p [ObjectId]),
+    /// Ask about boxes.
+    Ask {
+        /// Names the question in its answer.
+        ticket: Ticket,
+        /// The boxes; exactly one for [`Want::Dual`].
+        boxes: &'p [Proxy],
+        /// What to find out.
+        want: Want,
+    },
+    /// Deliver answers to what was asked.
+    Wait(Wait),
+    /// The frame is complete.
+    Done,
+}
+
+/// An occlusion-culling algorithm for one view.
+pub trait Policy: Send + Sync {
+    /// The name that `--policy` takes.
+    fn name(&self) -> &'static str;
+
+    /// Whether it needs the answers to its questions within the frame.
+    fn needs_blocking(&self) -> bool {
+        false
+    }
+
+    /// Starts a frame.
+    fn begin(&mut self, cx: &Context<'_>);
+
+    /// The next action. After [`Action::Done`] it is not called again before the next frame.
+    fn next(&mut self, cx: &Context<'_>) -> Action<'_>;
+
+    /// Takes an answer to a question of this frame.
+    fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>);
+
+    /// Forgets all history: after a camera cut, or for another scene.
+    fn reset(&mut self) {}
+
+    /// The dual answers of the frame, for the tree's adaptation; it may add none.
+    fn vote(&mut self, _votes: &mut Votes) {}
+
+    /// Takes the exact visible set, for the policy that draws it ([`Exact`]); others ignore it.
+    fn give_exact(&mut self, _visible: &[ObjectId]) {}
+
+    /// Whether [`Policy::give_exact`] is to be called before each frame.
+    fn wants_exact(&self) -> bool {
+        false
+    }
+
+    /// Its dials.
+    fn dials(&self) -> Vec<Dial> {
+        Vec::new()
+    }
+
+    /// Sets a dial by name.
+    ///
+    /// # Errors
+    /// [`Error::Dial`] for a name or value that does not exist, naming those that do.
+    fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
+        Err(dial::unknown(key, value, &self.dials()))
+    }
+}
+
+impl Policy for Box<dyn Policy> {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn needs_blocking(&self) -> bool {
+        (**self).needs_blocking()
+    }
+
+    fn begin(&mut self, cx: &Context<'_>) {
+        (**self).begin(cx);
+    }
+
+    fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
+        (**self).next(cx)
+    }
+
+    fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
+        (**self).answer(cx, ticket, answer);
+    }
+
+    fn reset(&mut self) {
+        (**self).reset();
+    }
+
+    fn vote(&mut self, votes: &mut Votes) {
+        (**self).vote(votes);
+    }
+
+    fn give_exact(&mut self, visible: &[ObjectId]) {
+        (**self).give_exact(visible);
+    }
+
+    fn wants_exact(&self) -> bool {
+        (**self).wants_exact()
+    }
+
+    fn dials(&self) -> Vec<Dial> {
+        (**self).dials()
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
+        (**self).set(key, value)
+    }
+}
+
+/// The names that [`by_name`] knows.
+pub const NAMES: &[&str] = &["none", "frustum", "dual-query", "exact"];
+
+/// A policy by the name that `--policy` takes, with its default dials.
+///
+/// # Errors
+/// [`Error::UnknownPolicy`], naming those there are.
+pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
+    Ok(match name {
+        "none" => Box::new(DrawAll::default()),
+        "frustum" => Box::new(FrustumOnly::default()),
+        "dual-query" => Box::new(DualQuery::default()),
+        "exact" => Box::new(Exact::default()),
+        _ => return Err(Error::UnknownPolicy { name: name.to_owned(), known: NAMES.join(", ") }),
+    })
+}

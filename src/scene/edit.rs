@@ -1,0 +1,123 @@
+//! Direct edits: insert, move, remove, rebase.
+
+use glam::DVec3;
+use hecs::Entity;
+
+use super::Scene;
+use super::components::Traits;
+use super::object::ObjectId;
+use super::objects::Place;
+use crate::geom::Aabb;
+use crate::tree::Tree;
+
+impl Scene {
+    /// Adds an object, without an entity. Its box may be bad: then it is drawn always.
+    /// O(depth). Call [`Scene::update`] before the next frame.
+    pub fn insert(&mut self, bounds: Aabb, traits: Traits) -> ObjectId {
+        self.insert_for(Entity::DANGLING, bounds, traits)
+    }
+
+    /// Moves an object; returns false if the handle is no longer valid. A bad box (not finite or
+    /// inverted) makes the object drawn always until it is given a good one. O(1); the object is
+    /// placed by the next update.
+    pub fn set_bounds(&mut self, id: ObjectId, bounds: Aabb) -> bool {
+        let Some(slot) = self.objects.slot(id) else { return false };
+        self.set_slot_bounds(slot, bounds);
+        true
+    }
+
+    /// Moves many objects, in time proportional to their number: for apps that know what moved.
+    /// Returns how many handles were no longer valid. The update is included.
+    pub fn sync_moved(&mut self, moved: impl IntoIterator<Item = (ObjectId, Aabb)>) -> usize {
+        let stale = moved.into_iter().filter(|&(id, bounds)| !self.set_bounds(id, bounds)).count();
+        self.update();
+        stale
+    }
+
+    /// Changes an object's optional components; false if the handle is no longer valid. O(depth).
+    pub fn set_traits(&mut self, id: ObjectId, bounds: Aabb, traits: Traits) -> bool {
+        let Some(slot) = self.objects.slot(id) else { return false };
+        self.objects.set_traits(slot, traits);
+        self.set_slot_bounds(slot, bounds);
+        true
+    }
+
+    /// Removes an object; false if the handle is no longer valid. O(depth).
+    pub fn remove(&mut self, id: ObjectId) -> bool {
+        let Some(slot) = self.objects.slot(id) else { return false };
+        self.remove_slot(slot);
+        true
+    }
+
+    /// Makes positions relative to another origin: near the camera of a large world, f32 is
+    /// precise again. Every box is translated, rounded outward, and the tree built anew. The app
+    /// gives its own f32 positions relative to the new origin from now on. O(n log n).
+    pub fn rebase(&mut self, origin: DVec3) {
+        let shift = self.origin - origin;
+        let boxes: Vec<(u32, Aabb)> =
+            self.objects.slots().filter_map(|slot| Some((slot, self.tree.aabb_of(slot)?))).collect();
+        self.origin = origin;
+        self.tree = Tree::new(self.tree.config().clone());
+        // Histories are about nodes that are gone: a new identity makes cullers begin anew.
+        self.id = super::next_id();
+        for (slot, aabb) in boxes {
+            let moved = Aabb::from_f64(aabb.min.as_dvec3(), aabb.max.as_dvec3(), -shift);
+            self.put(slot, moved);
+        }
+        self.update();
+    }
+
+    pub(super) fn insert_for(&mut self, entity: Entity, bounds: Aabb, traits: Traits) -> ObjectId {
+        let id = self.objects.insert(entity, traits);
+        self.put(id.slot() as u32, grown(bounds, traits.slack));
+        id
+    }
+
+    pub(super) fn set_slot_bounds(&mut self, slot: u32, bounds: Aabb) {
+        let traits = self.objects.traits(slot);
+        let bounds = grown(bounds, traits.slack);
+        let in_tree = self.objects.place(slot) == Place::Tree;
+        if in_tree && !traits.never_cull && bounds.is_valid() {
+            self.tree.set_bounds(slot, &bounds);
+            self.pending += 1;
+        } else {
+            if in_tree {
+                self.tree.remove(slot);
+            }
+            self.put(slot, bounds);
+        }
+    }
+
+    pub(super) fn remove_slot(&mut self, slot: u32) {
+        if self.objects.place(slot) == Place::Tree {
+            self.tree.remove(slot);
+        }
+        self.objects.remove(slot);
+        self.pending += 1;
+    }
+
+    /// Keeps an object that the tree does not hold where it belongs.
+    fn put(&mut self, slot: u32, bounds: Aabb) {
+        self.pending += 1;
+        let place = if !bounds.is_valid() {
+            Place::Bad
+        } else if self.objects.traits(slot).never_cull {
+            Place::Always
+        } else {
+            self.tree.insert(slot, &bounds);
+            Place::Tree
+        };
+        self.objects.set_place(slot, place);
+    }
+}
+
+/// The box with its slack. A slack that is not a length makes the box bad, not smaller.
+pub(super) fn grown(bounds: Aabb, slack: f32) -> Aabb {
+    if slack == 0.0 {
+        bounds
+    } else if slack > 0.0 && bounds.is_valid() {
+        bounds.inflated(slack)
+    } else {
+        Aabb::EMPTY
+    }
+}

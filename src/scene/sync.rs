@@ -1,0 +1,209 @@
+//! Mirroring a hecs world: what is new, what has moved, what is gone.
+
+use std::time::{Duration, Instant};
+
+use hecs::{Entity, World};
+
+use super::Scene;
+use super::components::{Batch, Bounds, BoundsF64, Mobility, NeverCull, NotOccluder, Slack, Traits};
+use super::edit::grown;
+use super::objects::Place;
+use crate::geom::Aabb;
+
+/// What a [`Scene::sync`] found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SyncReport {
+    /// Objects that are new.
+    pub spawned: usize,
+    /// Objects whose box or components changed.
+    pub moved: usize,
+    /// Objects whose entity is gone, or has no bounds any more.
+    pub removed: usize,
+    /// Objects whose bounds are bad now: they are drawn always.
+    pub bad: usize,
+    /// The first few of them.
+    pub first_bad: Vec<BadEdit>,
+    /// Time for reading the world.
+    pub sync_time: Duration,
+    /// Time for bringing the tree up to date.
+    pub tree_time: Duration,
+}
+
+/// An edit that could not be taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BadEdit {
+    /// Whose bounds are bad.
+    pub entity: Entity,
+    /// The box as it was given, without slack.
+    pub bounds: Aabb,
+    /// Its slack, metres.
+    pub slack: f32,
+}
+
+impl SyncReport {
+    /// How many bad edits are reported by name.
+    pub const NAMED: usize = 8;
+}
+
+const NONE: u32 = u32::MAX;
+
+/// Which object stands for which entity.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Mirror {
+    /// Slot by `Entity::id`.
+    slot_of: Vec<u32>,
+    /// The sync in which each slot's entity was last seen.
+    seen: Vec<u32>,
+    /// Slots that stand for an entity.
+    count: usize,
+    tick: u32,
+}
+
+impl Mirror {
+    pub(super) fn bytes(&self) -> usize {
+        (self.slot_of.capacity() + self.seen.capacity()) * size_of::<u32>()
+    }
+
+    fn slot_of(&self, entity: Entity) -> Option<u32> {
+        self.slot_of.get(entity.id() as usize).copied().filter(|&s| s != NONE)
+    }
+
+    fn bind(&mut self, entity: Entity, slot: u32) {
+        let index = entity.id() as usize;
+        if index >= self.slot_of.len() {
+            self.slot_of.resize(index + 1, NONE);
+        }
+        self.slot_of[index] = slot;
+        self.count += 1;
+    }
+
+    /// Records that a slot's entity is there.
+    fn see(&mut self, slot: u32) {
+        let index = slot as usize;
+        if index >= self.seen.len() {
+            self.seen.resize(index + 1, 0);
+        }
+        self.seen[index] = self.tick;
+    }
+}
+
+type Optional<'a> = (
+    Option<&'a Mobility>,
+    Option<&'a NeverCull>,
+    Option<&'a NotOccluder>,
+    Option<&'a Slack>,
+    Option<&'a Batch>,
+);
+
+impl Scene {
+    /// Brings the scene in step with a world: entities with [`Bounds`] (or [`BoundsF64`]) are its
+    /// objects. Spawned, moved and despawned entities, components added and removed, and entity
+    /// ids reused are all found by looking; nothing need be announced. The update is included.
+    /// O(entities), and O(depth) for each that changed.
+    pub fn sync(&mut self, world: &World) -> SyncReport {
+        let start = Instant::now();
+        let mut report = SyncReport::default();
+        self.mirror.tick = self.mirror.tick.wrapping_add(1);
+        let mut found = 0;
+        for (entity, Bounds(bounds), optional) in world.query::<(Entity, &Bounds, Optional<'_>)>().iter() {
+            found += 1;
+            self.sync_one(entity, *bounds, traits(optional), &mut report);
+        }
+        let mut absolute = world.query::<hecs::Without<(Entity, &BoundsF64, Optional<'_>), &Bounds>>();
+        for (entity, b, optional) in absolute.iter() {
+            found += 1;
+            let bounds = Aabb::from_f64(b.min, b.max, self.origin);
+            self.sync_one(entity, bounds, traits(optional), &mut report);
+        }
+        if found < self.mirror.count {
+            self.remove_unseen(&mut report);
+        }
+        report.sync_time = start.elapsed();
+        report.tree_time = self.update();
+        report
+    }
+
+    fn sync_one(&mut self, entity: Entity, bounds: Aabb, traits: Traits, report: &mut SyncReport) {
+        let known = self.mirror.slot_of(entity);
+        let slot = known.filter(|&slot| {
+            let same = self.objects.entity(slot) == entity;
+            if !same {
+                self.unbind(entity.id(), slot, report);
+            }
+            same
+        });
+        let slot = match slot {
+            Some(slot) => {
+                if self.change(slot, bounds, traits) {
+                    report.moved += 1;
+                }
+                slot
+            }
+            None => {
+                let slot = self.insert_for(entity, bounds, traits).slot() as u32;
+                self.mirror.bind(entity, slot);
+                report.spawned += 1;
+                slot
+            }
+        };
+        self.mirror.see(slot);
+        if self.objects.place(slot) == Place::Bad {
+            report.bad += 1;
+            if report.first_bad.len() < SyncReport::NAMED {
+                report.first_bad.push(BadEdit { entity, bounds, slack: traits.slack });
+            }
+        }
+    }
+
+    /// Takes over an entity's new box and components; false if they are the old ones.
+    fn change(&mut self, slot: u32, bounds: Aabb, traits: Traits) -> bool {
+        let same_traits = self.objects.traits(slot) == traits;
+        let same_box = match self.objects.place(slot) {
+            Place::Tree => self.tree.aabb_of(slot) == Some(grown(bounds, traits.slack)),
+            // Drawn always: only whether the box is good matters.
+            Place::Always => bounds.is_valid(),
+            Place::Bad => !grown(bounds, traits.slack).is_valid(),
+            Place::Free => false,
+        };
+        if same_traits && same_box {
+            return false;
+        }
+        self.objects.set_traits(slot, traits);
+        self.set_slot_bounds(slot, bounds);
+        true
+    }
+
+    fn remove_unseen(&mut self, report: &mut SyncReport) {
+        for index in 0..self.mirror.slot_of.len() {
+            let slot = self.mirror.slot_of[index];
+            if slot == NONE {
+                continue;
+            }
+            let seen = self.mirror.seen[slot as usize] == self.mirror.tick;
+            if !seen || self.objects.entity(slot).id() != index as u32 {
+                self.unbind(index as u32, slot, report);
+            }
+        }
+    }
+
+    /// Forgets which slot stood for an entity id, and removes the object if it is still of that
+    /// id: the app may have removed it directly, and the slot be another's by now.
+    fn unbind(&mut self, id: u32, slot: u32, report: &mut SyncReport) {
+        self.mirror.slot_of[id as usize] = NONE;
+        self.mirror.count -= 1;
+        if self.objects.entity(slot).id() == id {
+            self.remove_slot(slot);
+            report.removed += 1;
+        }
+    }
+}
+
+fn traits((mobility, never_cull, not_occluder, slack, batch): Optional<'_>) -> Traits {
+    Traits {
+        mobility: mobility.copied().unwrap_or_default(),
+        never_cull: never_cull.is_some(),
+        not_occluder: not_occluder.is_some(),
+        slack: slack.map_or(0.0, |s| s.0),
+        batch: batch.copied(),
+    }
+}

@@ -1,0 +1,26 @@
+//! Plain counters and stage times of a frame.
+
+use std::time::Duration;
+
+/// What one frame of one view did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameStats {
+    /// Objects handed to the draw closure.
+    pub drawn: u32,
+    /// Questions asked.
+    pub queries: u32,
+    /// Boxes in them.
+    pub query_boxes: u32,
+    /// Times that the policy waited for answers.
+    pub waves: u32,
+    /// Changes between drawing and asking.
+    pub state_changes: u32,
+    /// Time in the policy and in the driver's own work.
+    pub policy: Duration,
+    /// Time in the backend's and the app's drawing.
+    pub draw: Duration,
+    /// Time in handing questions to the backend.
+    pub query: Duration,
+    /// Time in waiting for answers, what is computed meanwhile included.
+    pub wait: Duration,
+}

@@ -1,0 +1,129 @@
+//! Building below a leaf: in bulk, where many objects arrive at once, and one level for a vote.
+
+use glam::Vec3;
+
+use super::config::Straddlers;
+use super::node::{Role, side};
+use super::place::{CONTENT, REFIT};
+use super::split::{Item, Site, choose};
+use super::{Edit, Tree};
+
+/// How far to build.
+#[derive(Clone, Copy)]
+pub(super) struct Extent {
+    /// Leaves of at most this many objects are left alone.
+    pub(super) leaf: u32,
+    /// Levels to add, at most.
+    pub(super) levels: u32,
+}
+
+impl Tree {
+    /// Builds below the leaves that have grown past what the configuration aims at. O(n log n) in
+    /// their objects.
+    pub(super) fn build_crowded(&mut self) {
+        while let Some(leaf) = self.crowded.pop() {
+            let full = self.nodes.run[leaf as usize].len > self.config.bulk_leaf;
+            if self.nodes.is_alive(leaf) && self.nodes.is_leaf(leaf) && full {
+                let extent = Extent { leaf: self.config.bulk_leaf, levels: u32::MAX };
+                self.build(leaf, None, extent);
+            }
+        }
+    }
+
+    /// Splits a leaf, and what comes of it, as far as `extent` says. Returns whether it split.
+    pub(super) fn build(&mut self, leaf: u32, forward: Option<Vec3>, extent: Extent) -> bool {
+        let mut items = std::mem::take(&mut self.scratch);
+        items.clear();
+        items.extend(self.blocks.items(self.nodes.run[leaf as usize]));
+        if leaf == 0 {
+            for (_, aabb) in &items {
+                self.nodes.cell[0] = self.nodes.cell[0].union(aabb);
+            }
+        }
+        let Some(plane) = self.plane_for(leaf, &items, forward) else {
+            // Only more objects can change that.
+            self.nodes.retry_at[leaf as usize] = 2 * items.len() as u32;
+            self.scratch = items;
+            return false;
+        };
+        self.blocks.release(&mut self.nodes.run[leaf as usize]);
+        // New nodes have news only if their objects are new: a split alone moves nothing.
+        let why = REFIT | (self.nodes.dirty[leaf as usize] & CONTENT);
+        let mut stack = vec![(leaf, 0..items.len(), 0, Some(plane))];
+        while let Some((node, range, level, plane)) = stack.pop() {
+            let part = &mut items[range.clone()];
+            let Some((axis, plane)) = plane else {
+                self.fill(node, part, why);
+                continue;
+            };
+            let first = self.nodes.split(node, axis, plane, self.tick);
+            let children = [0, 1, 2].map(|i| self.nodes.id(first + i));
+            self.log.push(Edit::Split { parent: self.nodes.id(node), children });
+            self.stats.splits += 1;
+            self.touch(node, REFIT);
+            let [low, high] = partition(part, axis, plane);
+            let mut ranges = [0..low, low..high, high..part.len()];
+            if self.config.straddlers == Straddlers::StayInParent {
+                self.fill(node, &part[ranges[2].clone()], why);
+                ranges[2] = 0..0;
+            }
+            for (child, within) in (first..).zip(ranges) {
+                self.nodes.below[child as usize] = within.len() as u32;
+                if within.is_empty() {
+                    continue;
+                }
+                let deeper = within.len() as u32 > extent.leaf && level + 1 < extent.levels;
+                let plane = if deeper { self.plane_for(child, &part[within.clone()], forward) } else { None };
+                if deeper && plane.is_none() {
+                    self.nodes.retry_at[child as usize] = 2 * within.len() as u32;
+                }
+                stack.push((child, range.start + within.start..range.start + within.end, level + 1, plane));
+            }
+        }
+        self.scratch = items;
+        true
+    }
+
+    /// Stores objects in a node's run.
+    fn fill(&mut self, node: u32, items: &[Item], why: u8) {
+        let mut run = self.nodes.run[node as usize];
+        self.blocks.reserve(&mut run, node, items.len() as u32);
+        for (slot, aabb) in items {
+            self.blocks.push(&mut run, node, *slot, aabb);
+        }
+        self.nodes.run[node as usize] = run;
+        self.touch(node, why);
+    }
+
+    fn plane_for(&self, node: u32, items: &[Item], forward: Option<Vec3>) -> Option<(usize, f32)> {
+        let n = node as usize;
+        let site = Site {
+            items,
+            cell: self.nodes.cell[n],
+            straddled: self.nodes.straddled[n],
+            role: self.nodes.role[n],
+            forward,
+        };
+        choose(&site, &self.config)
+    }
+}
+
+/// Orders objects low, high, straddling; returns where high begins, and where straddling does.
+fn partition(items: &mut [Item], axis: usize, plane: f32) -> [usize; 2] {
+    let (mut low, mut at, mut straddling) = (0, 0, items.len());
+    while at < straddling {
+        match side(&items[at].1, axis, plane) {
+            Role::Low => {
+                items.swap(low, at);
+                low += 1;
+                at += 1;
+            }
+            Role::Straddle => {
+                straddling -= 1;
+                items.swap(at, straddling);
+            }
+            Role::High | Role::Root => at += 1,
+        }
+    }
+    [low, straddling]
+}

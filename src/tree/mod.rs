@@ -1,0 +1,137 @@
+//! Where it is: the adaptive ternary tree (Kovalčík & Tobola 2005).
+//!
+//! A node has no children or three: the two halves of its cell, and a third for the objects that
+//! the splitting plane cuts. Objects lie wholly in the cell of their node, in runs of blocks of
+//! sixteen boxes (`blocks`). Edits are placed at once (`place`); [`Tree::update`] brings boxes and
+//! stamps up to date (`refit`), builds what has grown too full (`build`), and votes split and
+//! merge leaves (`adapt`).
+
+mod adapt;
+mod blocks;
+mod build;
+mod config;
+mod log;
+mod node;
+mod place;
+mod refit;
+mod settle;
+mod split;
+mod traverse;
+mod validate;
+
+pub use adapt::{Vote, Votes};
+pub use blocks::{Block, LANES};
+pub use config::{SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig};
+pub use log::Edit;
+pub(crate) use log::EditLog;
+pub use node::{NodeId, Role};
+pub use traverse::NodeInfo;
+
+use crate::geom::Aabb;
+use blocks::Blocks;
+use node::Nodes;
+
+/// Counters of the tree: sizes now, and events since it was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TreeStats {
+    /// Nodes alive.
+    pub nodes: usize,
+    /// Depth of the deepest leaf; 0 for a root alone. O(nodes).
+    pub depth: usize,
+    /// Leaves split, by votes or by the bulk build.
+    pub splits: u64,
+    /// Sibling triples merged.
+    pub merges: u64,
+    /// Objects that changed their node.
+    pub moves: u64,
+    /// Splits and merges that undid one another within [`Tree::FLIP_FRAMES`].
+    pub flips: u64,
+}
+
+/// The ternary tree over object slots and their boxes.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    config: TreeConfig,
+    nodes: Nodes,
+    blocks: Blocks,
+    log: EditLog,
+    stats: TreeStats,
+    /// Counts updates; stamps of nodes compare with it.
+    tick: u32,
+    /// Objects whose new box their node does not hold.
+    leavers: Vec<u32>,
+    /// Nodes to refit, by depth.
+    dirty: Vec<Vec<u32>>,
+    /// Leaves that have grown past the bulk build's aim.
+    crowded: Vec<u32>,
+    /// Inner nodes that may have become superfluous.
+    thinned: Vec<u32>,
+    /// Where the search for idle leaves goes on.
+    idle_cursor: usize,
+    /// Reused by builds, splits and merges.
+    scratch: Vec<split::Item>,
+}
+
+impl Tree {
+    /// A split and a merge of the same node within this many updates count as a flip.
+    pub const FLIP_FRAMES: u32 = 60;
+
+    /// An empty tree.
+    pub fn new(config: TreeConfig) -> Self {
+        Self {
+            config,
+            nodes: Nodes::with_root(),
+            blocks: Blocks::default(),
+            log: EditLog::default(),
+            stats: TreeStats::default(),
+            tick: 1,
+            leavers: Vec::new(),
+            dirty: Vec::new(),
+            crowded: Vec::new(),
+            thinned: Vec::new(),
+            idle_cursor: 0,
+            scratch: Vec::new(),
+        }
+    }
+
+    /// The dials.
+    pub fn config(&self) -> &TreeConfig {
+        &self.config
+    }
+
+    /// Counters. O(nodes), for the depth.
+    pub fn stats(&self) -> TreeStats {
+        let depth = self.nodes().map(|n| n.depth as usize).max().unwrap_or(0);
+        TreeStats { nodes: self.nodes.len(), depth, ..self.stats }
+    }
+
+    /// Objects in the tree.
+    pub fn len(&self) -> usize {
+        self.nodes.below[0] as usize
+    }
+
+    /// Whether it holds no object.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The number of updates so far.
+    pub fn tick(&self) -> u32 {
+        self.tick
+    }
+
+    /// The box of an object slot, if the tree holds it. O(1).
+    pub fn aabb_of(&self, slot: u32) -> Option<Aabb> {
+        self.blocks.aabb_of(slot)
+    }
+
+    /// Memory held, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.nodes.bytes() + self.blocks.bytes()
+    }
+
+    /// What changed in the tree's shape, for histories that follow it.
+    pub(crate) fn log(&self) -> &EditLog {
+        &self.log
+    }
+}

@@ -1,0 +1,268 @@
+//! Adding, moving and removing objects.
+
+use glam::Vec3;
+
+use super::blocks::NONE;
+use super::config::Straddlers;
+use super::node::Role;
+use super::{Edit, Tree};
+use crate::geom::Aabb;
+
+/// The node needs its box refitted.
+pub(super) const REFIT: u8 = 1;
+/// Something entered or moved: the content epoch advances as well.
+pub(super) const CONTENT: u8 = 2;
+
+impl Tree {
+    /// Adds an object that the tree does not hold. The box must be valid. O(depth).
+    pub(crate) fn insert(&mut self, slot: u32, aabb: &Aabb) {
+        self.hold_in_root(aabb);
+        self.nodes.below[0] += 1;
+        self.descend(0, slot, aabb);
+    }
+
+    /// Gives an object that the tree holds a new box. An object that stays in its cell costs one
+    /// compare; one that leaves is moved by the next [`Tree::update`].
+    pub(crate) fn set_bounds(&mut self, slot: u32, aabb: &Aabb) {
+        let Some(node) = self.blocks.owner_of(slot) else { return };
+        self.blocks.set(slot, aabb);
+        self.touch(node, REFIT | CONTENT);
+        if !self.stays(node, aabb) {
+            self.leavers.push(slot);
+        }
+    }
+
+    /// Takes an object out. O(depth).
+    pub(crate) fn remove(&mut self, slot: u32) {
+        let Some(node) = self.blocks.owner_of(slot) else { return };
+        self.take(node, slot);
+        self.leave_upward(node);
+    }
+
+    /// Moves the objects that have left their cells: each climbs to the first ancestor that holds
+    /// it, and goes down from there.
+    pub(super) fn relocate(&mut self) {
+        let mut leavers = std::mem::take(&mut self.leavers);
+        for slot in leavers.drain(..) {
+            // It may have been removed since, have come back, or be listed twice.
+            let Some(node) = self.blocks.owner_of(slot) else { continue };
+            let Some(aabb) = self.blocks.aabb_of(slot) else { continue };
+            if self.stays(node, &aabb) {
+                continue;
+            }
+            self.take(node, slot);
+            // Growing the root may give this node's content another index; an emptied run has
+            // none to follow, so the climb is done before.
+            let mut at = node;
+            loop {
+                self.nodes.below[at as usize] -= 1;
+                let parent = self.nodes.parent[at as usize];
+                if parent == NONE {
+                    self.hold_in_root(&aabb);
+                    at = 0;
+                    break;
+                }
+                at = parent;
+                if self.nodes.holds(at, &aabb) {
+                    self.nodes.below[at as usize] -= 1;
+                    break;
+                }
+            }
+            self.nodes.below[at as usize] += 1;
+            self.descend(at, slot, &aabb);
+            self.stats.moves += 1;
+        }
+        self.leavers = leavers;
+    }
+
+    /// Whether an object may stay where it is: in the cell, and, in an inner node, still cut by
+    /// the plane.
+    fn stays(&self, node: u32, aabb: &Aabb) -> bool {
+        if node == 0 && self.nodes.is_leaf(0) {
+            return true;
+        }
+        self.nodes.holds(node, aabb)
+            && (self.nodes.is_leaf(node) || self.nodes.side(node, aabb) == Role::Straddle)
+    }
+
+    /// Puts an object into the subtree of a node that holds it and has counted it already.
+    fn descend(&mut self, mut at: u32, slot: u32, aabb: &Aabb) {
+        while !self.nodes.is_leaf(at) {
+            let role = self.nodes.side(at, aabb);
+            if role == Role::Straddle && self.config.straddlers == Straddlers::StayInParent {
+                break;
+            }
+            at = self.nodes.child[at as usize] + role as u32 - Role::Low as u32;
+            self.nodes.below[at as usize] += 1;
+        }
+        self.blocks.push(&mut self.nodes.run[at as usize], at, slot, aabb);
+        self.touch(at, REFIT | CONTENT);
+        let leaf = self.nodes.is_leaf(at);
+        let limit = 4 * self.config.bulk_leaf;
+        if leaf && self.nodes.run[at as usize].len == limit.max(self.nodes.retry_at[at as usize]) {
+            self.crowded.push(at);
+        }
+    }
+
+    /// Takes an object out of its node's run.
+    fn take(&mut self, node: u32, slot: u32) {
+        self.blocks.remove(&mut self.nodes.run[node as usize], node, slot);
+        self.touch(node, REFIT);
+        if self.nodes.run[node as usize].len == 0 && self.nodes.parent[node as usize] != NONE {
+            self.thinned.push(self.nodes.parent[node as usize]);
+        }
+    }
+
+    fn leave_upward(&mut self, mut node: u32) {
+        while node != NONE {
+            self.nodes.below[node as usize] -= 1;
+            node = self.nodes.parent[node as usize];
+        }
+    }
+
+    /// Marks a node for the next refit.
+    pub(super) fn touch(&mut self, node: u32, why: u8) {
+        let n = node as usize;
+        if self.nodes.dirty[n] == 0 {
+            let depth = self.nodes.depth[n] as usize;
+            if depth >= self.dirty.len() {
+                self.dirty.resize_with(depth + 1, Vec::new);
+            }
+            self.dirty[depth].push(node);
+        }
+        self.nodes.dirty[n] |= why;
+    }
+
+    /// Makes the root's cell hold a box. A root leaf simply takes a larger cell; an inner root
+    /// becomes a half of one twice as large, as often as it takes: O(log(distance / size)).
+    fn hold_in_root(&mut self, aabb: &Aabb) {
+        if self.nodes.is_leaf(0) {
+            self.nodes.cell[0] = self.nodes.cell[0].union(aabb);
+            return;
+        }
+        for axis in 0..3 {
+            while aabb.max[axis] > self.nodes.cell[0].max[axis] {
+                self.grow_root(axis, Role::High);
+            }
+            while aabb.min[axis] < self.nodes.cell[0].min[axis] {
+                self.grow_root(axis, Role::Low);
+            }
+        }
+    }
+
+    /// Doubles the root's cell on one axis, toward `new`: the half that is added.
+    fn grow_root(&mut self, axis: usize, new: Role) {
+        let old = self.nodes.cell[0];
+        // A flat root could not grow by doubling; the square root keeps the step finite at the
+        // far end of f32, where doubling would be infinite.
+        let step = old.size()[axis].max(old.size().max_element() * 1e-3).max(f32::MIN_POSITIVE.sqrt());
+        let mut cell = old;
+        let plane = match new {
+            Role::High => {
+                cell.max[axis] = (old.max[axis] + step).next_up().min(f32::MAX);
+                old.max[axis]
+            }
+            _ => {
+                cell.min[axis] = (old.min[axis] - step).next_down().max(-f32::MAX);
+                old.min[axis]
+            }
+        };
+        self.wrap_root(cell, axis, plane, new);
+    }
+
+    /// Puts the root's content into the half of a new root that is not `new`.
+    fn wrap_root(&mut self, cell: Aabb, axis: usize, plane: f32, new: Role) {
+        let from = self.nodes.id(0);
+        // A node aside takes the content while index 0 is made anew around it.
+        let (inner_cell, depth_below) = (self.nodes.cell[0], self.nodes.depth[0] + 1);
+        let (child_of_old, changed_at) = (self.nodes.child[0], self.nodes.changed_at[0]);
+        let (old_axis, old_plane) = (self.nodes.axis[0], self.nodes.plane[0]);
+        self.nodes.child[0] = NONE;
+        let first = self.nodes.split(0, axis, plane, self.tick);
+        let to = if new == Role::High { first } else { first + 1 };
+        self.nodes.child[0] = child_of_old;
+        self.nodes.transplant(0, to);
+        self.nodes.axis[to as usize] = old_axis;
+        self.nodes.plane[to as usize] = old_plane;
+        self.nodes.changed_at[to as usize] = changed_at;
+        self.nodes.cell[to as usize] = inner_cell;
+        self.nodes.straddled[to as usize] = Vec3::NAN;
+        self.blocks.set_owner(self.nodes.run[to as usize], to);
+
+        let (below, epoch, moved_at) = (self.nodes.below[0], self.nodes.epoch[0], self.nodes.moved_at[0]);
+        let bounds = self.nodes.bounds[0];
+        self.nodes.reset(0, NONE, Role::Root, cell, Vec3::NAN, 0);
+        self.nodes.child[0] = first;
+        self.nodes.axis[0] = axis as u8;
+        self.nodes.plane[0] = plane;
+        self.nodes.below[0] = below;
+        self.nodes.epoch[0] = epoch;
+        self.nodes.moved_at[0] = moved_at;
+        self.nodes.bounds[0] = bounds;
+        let far = if new == Role::High { first + 1 } else { first };
+        let mut half = cell;
+        match new {
+            Role::High => half.min[axis] = plane,
+            _ => half.max[axis] = plane,
+        }
+        self.nodes.cell[far as usize] = half;
+        self.nodes.cell[first as usize + 2] = cell;
+        self.redepth(to, depth_below);
+        self.log.push(Edit::Moved { from, to: self.nodes.id(to) });
+        self.redirty();
+    }
+
+    /// If the root's objects all lie in one inner half, that half becomes the root: a world that
+    /// has shrunk does not keep the depth that it grew. O(nodes below), for their depths.
+    pub(super) fn shrink_root(&mut self) {
+        while let Some(heir) = self.sole_heir() {
+            let from = self.nodes.id(heir);
+            let first = self.nodes.child[0];
+            let cell = self.nodes.cell[heir as usize];
+            let identity = self.nodes.identity[0].wrapping_add(1);
+            self.nodes.transplant(heir, 0);
+            self.blocks.set_owner(self.nodes.run[0], 0);
+            self.nodes.cell[0] = cell;
+            self.nodes.identity[0] = identity;
+            self.nodes.free_triple(first);
+            self.redepth(0, 0);
+            self.log.push(Edit::Moved { from, to: self.nodes.id(0) });
+            self.redirty();
+        }
+    }
+
+    /// The half of the root that is an inner node and holds every object, if one does.
+    fn sole_heir(&self) -> Option<u32> {
+        let mut children = self.nodes.children(0);
+        let heir = children.find(|&c| self.nodes.below[c as usize] > 0)?;
+        let all = self.nodes.below[heir as usize] == self.nodes.below[0];
+        let half = self.nodes.role[heir as usize] != Role::Straddle;
+        let others_are_leaves = self.nodes.children(0).all(|c| c == heir || self.nodes.is_leaf(c));
+        (all && half && others_are_leaves && !self.nodes.is_leaf(heir)).then_some(heir)
+    }
+
+    fn redepth(&mut self, top: u32, depth: u16) {
+        let mut stack = vec![(top, depth)];
+        while let Some((node, depth)) = stack.pop() {
+            self.nodes.depth[node as usize] = depth;
+            stack.extend(self.nodes.children(node).map(|c| (c, depth + 1)));
+        }
+    }
+
+    /// Rebuilds the lists of dirty nodes after depths or indices have changed.
+    fn redirty(&mut self) {
+        let mut listed: Vec<u32> = self.dirty.iter_mut().flat_map(std::mem::take).collect();
+        // Index 0 and the node that took its content may each be the dirty one: both refit.
+        listed.extend(self.nodes.children(0));
+        listed.push(0);
+        for node in listed {
+            let n = node as usize;
+            let alive = self.nodes.is_alive(node);
+            let why = self.nodes.dirty[n] | REFIT;
+            self.nodes.dirty[n] = 0;
+            if alive {
+                self.touch(node, why);
+            }
+        }
+    }
+}
