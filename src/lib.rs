@@ -6,11 +6,13 @@ mod error;
 mod stats;
 mod tradeoff;
 
+pub mod draw;
 pub mod geom;
 pub mod policy;
 pub mod query;
 pub mod scene;
 pub mod tree;
+pub mod worlds;
 
 pub use culler::{Culler, Voter};
 pub use dial::Dial;

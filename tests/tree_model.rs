@@ -277,7 +277,7 @@ fn the_published_rule_splits_and_merges() {
     }
     scene.update();
     assert_eq!(scene.tree().stats().nodes, 1, "twelve fit the bulk build's leaf");
-    let mut vote = |scene: &mut Scene, visible: u32| {
+    let vote = |scene: &mut Scene, visible: u32| {
         let leaves: Vec<_> = scene.tree().nodes().filter(|n| n.is_leaf).map(|n| n.id).collect();
         let mut ballot = Ballot(Votes { forward: Vec3::X, votes: Vec::new() });
         leaves.iter().for_each(|&leaf| ballot.0.count(leaf, visible, 100));

@@ -17,9 +17,9 @@
 //! Conservative whatever the history: nothing is culled but by an answer of this very frame, and
 //! every occluder behind that answer was drawn in this frame.
 
-use std::cmp::Ordering;
-use std::collections::{BinaryHeap, VecDeque};
+use std::collections::VecDeque;
 
+use super::front::{Front, FrontQueue};
 use super::{Action, Context, Extent, History, Policy, ScreenTiles};
 use crate::Error;
 use crate::dial::{self, Dial};
@@ -36,7 +36,7 @@ pub struct DualQuery {
     pub max_waves: u32,
     history: History,
     /// Nodes to look at, nearest first.
-    front: BinaryHeap<Front>,
+    front: FrontQueue,
     /// Nodes held back for the next wave.
     held: Vec<Front>,
     /// What is asked in this wave; a ticket is an index.
@@ -59,23 +59,13 @@ enum Step {
     Wait,
 }
 
-/// A node on the way, with how far in front of the viewer it begins.
-#[derive(Clone, Copy, Debug)]
-struct Front {
-    distance: f32,
-    node: NodeId,
-    mask: PlaneMask,
-    /// Its question, once there is one.
-    proxy: Option<u32>,
-}
-
 impl Default for DualQuery {
     fn default() -> Self {
         Self {
             n_skip: 0,
             max_waves: 64,
             history: History::default(),
-            front: BinaryHeap::new(),
+            front: FrontQueue::default(),
             held: Vec::new(),
             wave: Vec::new(),
             proxies: Vec::new(),
@@ -109,7 +99,7 @@ impl Policy for DualQuery {
         self.votes.forward = cx.view.forward();
         self.tiles = ScreenTiles::new(cx.view.viewport());
         self.waves = 0;
-        self.push(cx, cx.tree.root(), PlaneMask::ALL);
+        self.front.push(cx, cx.tree.root(), PlaneMask::ALL);
     }
 
     fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
@@ -171,23 +161,12 @@ impl Policy for DualQuery {
 }
 
 impl DualQuery {
-    /// Puts a node on the way, unless it is empty or outside.
-    fn push(&mut self, cx: &Context<'_>, node: NodeId, mask: PlaneMask) {
-        if cx.tree.count(node) == 0 {
-            return;
-        }
-        if let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), mask) {
-            let distance = cx.tree.distance(node, cx.view.eye());
-            self.front.push(Front { distance, node, mask, proxy: None });
-        }
-    }
-
     /// Goes through all nodes on the way, nearest first: opens, draws, and gathers the questions
     /// that may be asked together.
     fn fill_wave(&mut self, cx: &Context<'_>) {
         self.wave.clear();
         self.tiles.clear();
-        self.front.extend(self.held.drain(..));
+        self.front.take_back(&mut self.held);
         while let Some(front) = self.front.pop() {
             if front.proxy.is_none() && self.is_taken_as_visible(cx, front.node) {
                 self.take_as_visible(cx, front.node, front.mask);
@@ -260,7 +239,7 @@ impl DualQuery {
         if let Some(children) = cx.tree.children(node) {
             self.opened.push(node);
             for child in children {
-                self.push(cx, child, mask);
+                self.front.push(cx, child, mask);
             }
         }
     }
@@ -279,25 +258,3 @@ impl DualQuery {
         }
     }
 }
-
-impl Ord for Front {
-    /// The nearest is the greatest: the heap pops it first. Ties by index, for determinism.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_distance = other.distance.total_cmp(&self.distance);
-        by_distance.then_with(|| other.node.index().cmp(&self.node.index()))
-    }
-}
-
-impl PartialOrd for Front {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Front {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Front {}

@@ -6,18 +6,23 @@
 //! each backend, is tested without one, and a recorded frame replays bit for bit.
 
 mod dual_query;
-mod exact;
+mod front;
 mod frustum;
 mod history;
 mod none;
 mod order;
+mod recorded;
+mod statistical;
+mod stop_and_wait;
 
 pub use dual_query::DualQuery;
-pub use exact::Exact;
 pub use frustum::FrustumOnly;
 pub use history::{History, NodeState};
 pub use none::DrawAll;
 pub use order::ScreenTiles;
+pub use recorded::{Recorded, Recording};
+pub use statistical::Statistical;
+pub use stop_and_wait::StopAndWait;
 
 use crate::dial::{self, Dial};
 use crate::geom::{Frustum, Proxy, View};
@@ -104,13 +109,13 @@ pub trait Policy: Send + Sync {
     /// The dual answers of the frame, for the tree's adaptation; it may add none.
     fn vote(&mut self, _votes: &mut Votes) {}
 
-    /// Takes the exact visible set, for the policy that draws it ([`Exact`]); others ignore it.
-    fn give_exact(&mut self, _visible: &[ObjectId]) {}
-
-    /// Whether [`Policy::give_exact`] is to be called before each frame.
-    fn wants_exact(&self) -> bool {
-        false
+    /// What it must be given before each frame, if it is a reference ([`Recorded`]).
+    fn wants_recorded(&self) -> Option<Recording> {
+        None
     }
+
+    /// Takes what a reference draws in the next frame; others ignore it.
+    fn give_recorded(&mut self, _visible: &[ObjectId]) {}
 
     /// Its dials.
     fn dials(&self) -> Vec<Dial> {
@@ -155,12 +160,12 @@ impl Policy for Box<dyn Policy> {
         (**self).vote(votes);
     }
 
-    fn give_exact(&mut self, visible: &[ObjectId]) {
-        (**self).give_exact(visible);
+    fn wants_recorded(&self) -> Option<Recording> {
+        (**self).wants_recorded()
     }
 
-    fn wants_exact(&self) -> bool {
-        (**self).wants_exact()
+    fn give_recorded(&mut self, visible: &[ObjectId]) {
+        (**self).give_recorded(visible);
     }
 
     fn dials(&self) -> Vec<Dial> {
@@ -173,7 +178,7 @@ impl Policy for Box<dyn Policy> {
 }
 
 /// The names that [`by_name`] knows.
-pub const NAMES: &[&str] = &["none", "frustum", "dual-query", "exact"];
+pub const NAMES: &[&str] = &["none", "frustum", "statistical", "dual-query", "stop-and-wait", "opt", "exact"];
 
 /// A policy by the name that `--policy` takes, with its default dials.
 ///
@@ -184,7 +189,10 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "none" => Box::new(DrawAll::default()),
         "frustum" => Box::new(FrustumOnly::default()),
         "dual-query" => Box::new(DualQuery::default()),
-        "exact" => Box::new(Exact::default()),
+        "statistical" => Box::new(Statistical::default()),
+        "stop-and-wait" => Box::new(StopAndWait::default()),
+        "opt" => Box::new(Recorded::new(Recording::StopAndWait)),
+        "exact" => Box::new(Recorded::new(Recording::ExactSet)),
         _ => return Err(Error::UnknownPolicy { name: name.to_owned(), known: NAMES.join(", ") }),
     })
 }

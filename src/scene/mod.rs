@@ -7,6 +7,8 @@
 
 mod components;
 mod edit;
+#[cfg(feature = "gltf")]
+pub mod gltf;
 pub mod mesh;
 mod object;
 mod objects;

@@ -53,7 +53,8 @@ fn middle(site: &Site<'_>, within: &Aabb, bounds: &Aabb, config: &TreeConfig) ->
 fn separates(site: &Site<'_>, bounds: &Aabb, axis: usize, plane: f32) -> bool {
     // A straddled axis cannot separate: every object is across it already, and a plane strictly
     // inside the cell is what keeps the halves of the cell proper boxes.
-    if !site.straddled[axis].is_nan() || !(site.cell.min[axis] < plane && plane < site.cell.max[axis]) {
+    let inside = site.cell.min[axis] < plane && plane < site.cell.max[axis];
+    if !site.straddled[axis].is_nan() || !inside {
         return false;
     }
     if bounds.max[axis] <= plane || bounds.min[axis] >= plane {
@@ -71,7 +72,8 @@ fn surface_area(site: &Site<'_>, bounds: &Aabb) -> Option<(usize, f32)> {
     let mut best: Option<(f32, usize, f32)> = None;
     for axis in 0..3 {
         let (low, size) = (bounds.min[axis], bounds.size()[axis]);
-        if !site.straddled[axis].is_nan() || !(size > 0.0 && size.is_finite()) {
+        let usable = site.straddled[axis].is_nan() && size > 0.0 && size.is_finite();
+        if !usable {
             continue;
         }
         let position = |k: usize| low + size * (k as f32 / BINS as f32);

@@ -1,0 +1,7 @@
+//! What the app sees: drawable things and how finely they are drawn.
+
+mod detail;
+mod drawable;
+
+pub use detail::Detail;
+pub use drawable::Drawable;

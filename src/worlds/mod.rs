@@ -1,0 +1,89 @@
+//! Seeded worlds: the same seed and scale make the same world, bit for bit, on every machine.
+//!
+//! Two rules keep that promise: every random number comes from a [`rand_chacha`] stream with
+//! our own mapping to ranges, and every curve from [`libm`] and the four operations, which
+//! round alike everywhere; glam's matrix products, which may be fused, stay out of it.
+
+mod dice;
+mod path;
+pub mod power_plant;
+mod shape;
+mod swarm;
+
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+
+use crate::draw::Drawable;
+use crate::geom::Aabb;
+use crate::scene::Bounds;
+use crate::scene::mesh::Mesh;
+
+pub use path::{CameraPath, Pose};
+pub use power_plant::power_plant;
+#[cfg(feature = "gltf")]
+pub use swarm::bunny_mesh;
+pub use swarm::{Motion, Swarm};
+
+/// A world before it is spawned: shared meshes and the objects that use them.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// For reports.
+    pub name: String,
+    /// Each is used by any number of objects.
+    pub meshes: Vec<Mesh>,
+    /// What stands where.
+    pub objects: Vec<Placed>,
+    /// The box around all objects; [`Aabb::EMPTY`] without any.
+    pub bounds: Aabb,
+}
+
+/// One object of a [`Model`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Index into [`Model::meshes`].
+    pub mesh: usize,
+    /// Where it stands.
+    pub world_from_object: Affine3A,
+    /// Holds every vertex of every level as transformed in f32.
+    pub bounds: Aabb,
+    /// Red, green and blue, as sRGB shows them.
+    pub color: [u8; 3],
+}
+
+impl Model {
+    /// A model of nothing.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), meshes: Vec::new(), objects: Vec::new(), bounds: Aabb::EMPTY }
+    }
+
+    /// Adds an object that uses a mesh already in [`Model::meshes`].
+    ///
+    /// # Panics
+    /// When there is no such mesh.
+    pub fn place(&mut self, mesh: usize, world_from_object: Affine3A, color: [u8; 3]) {
+        let bounds = self.meshes[mesh].bounds().transformed(&world_from_object);
+        self.bounds = self.bounds.union(&bounds);
+        self.objects.push(Placed { mesh, world_from_object, bounds, color });
+    }
+
+    /// Triangles of all objects at full detail.
+    pub fn triangles(&self) -> u64 {
+        self.objects.iter().map(|o| self.meshes[o.mesh].triangle_count() as u64).sum()
+    }
+
+    /// Spawns every object with [`Bounds`] and [`Drawable`], in order.
+    pub fn spawn(&self, world: &mut hecs::World) {
+        world
+            .spawn_batch(self.objects.iter().map(|o| {
+                let mesh = self.meshes[o.mesh].clone();
+                let drawable = Drawable { mesh, world_from_object: o.world_from_object, color: o.color };
+                (Bounds(o.bounds), drawable)
+            }))
+            .for_each(drop);
+    }
+}
+
+/// A transform from its columns, written out so that no product of matrices is involved.
+fn affine(axes: [Vec3; 3], translation: Vec3) -> Affine3A {
+    let [x, y, z] = axes.map(Vec3A::from);
+    Affine3A { matrix3: Mat3A::from_cols(x, y, z), translation: translation.into() }
+}
