@@ -1,5 +1,7 @@
 //! Is it hidden? A backend owns the depth of one frame and answers questions about boxes.
 
+pub mod software;
+
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::scene::ObjectSet;
