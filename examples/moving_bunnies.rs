@@ -6,15 +6,15 @@
 //! cargo run --release --example moving_bunnies -- --help
 //! ```
 
-mod support;
+pub mod support;
 
 use support::flags::Flags;
 use support::run::{Frame, Run};
+use tercet::Culler;
 use tercet::geom::View;
 use tercet::query::software::SoftwareQueries;
 use tercet::scene::{Scene, SceneConfig};
 use tercet::worlds::{self, Swarm, power_plant};
-use tercet::Culler;
 
 /// Nothing is drawn that is nearer to the eye, metres.
 const NEAR: f32 = 0.1;
@@ -27,9 +27,10 @@ fn main() -> anyhow::Result<()> {
     let mut world = hecs::World::new();
     let plant = worlds::power_plant(flags.seed, flags.scale);
     plant.spawn(&mut world);
-    let swarm = Swarm::new(flags.seed, flags.objects, worlds::bunny_mesh()?, plant.bounds);
+    let room = power_plant::interior(flags.scale);
+    let swarm = Swarm::new(flags.seed, flags.objects, worlds::bunny_mesh()?, room);
     swarm.spawn(&mut world);
-    let flight = power_plant::flight();
+    let flight = power_plant::path(flags.scale);
 
     // The engine: the scene knows where things are, the culler what one camera sees, and the
     // backend answers whether a box is hidden.

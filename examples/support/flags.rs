@@ -102,7 +102,8 @@ impl Flags {
     /// The policy, its dials set.
     pub fn policy(&self) -> anyhow::Result<Box<dyn Policy>> {
         let mut policy = policy::by_name(&self.policy)?;
-        for (key, value) in self.dials.iter().filter(|(key, _)| has(&policy.dials(), key)) {
+        let known = policy.dials();
+        for (key, value) in self.dials.iter().filter(|(key, _)| has(&known, key)) {
             policy.set(key, value)?;
         }
         Ok(policy)
@@ -176,13 +177,13 @@ fn is_tree_dial(key: &str) -> bool {
 
 /// What stands below the flags in `--help`.
 fn catalogue(example: &str) -> String {
-    let run = format!("cargo run --release --example {example} --");
+    let run = format!("cargo run --release --example {example}");
     let mut text = format!(
         "Examples:\n  \
          {run}\n      the whole run, with its figures and pictures\n  \
-         {run} --frames 60 --oracle\n      check each frame against the exact visible set\n  \
-         {run} --policy frustum\n      what the view frustum alone would leave to draw\n  \
-         {run} --set preset=paper\n      the tree with the rule and the constants of the 2005 paper\n\n\
+         {run} -- --frames 60 --oracle\n      check each frame against the exact visible set\n  \
+         {run} -- --policy frustum\n      what the view frustum alone would leave to draw\n  \
+         {run} -- --set preset=paper\n      the tree with the rule and the constants of the 2005 paper\n\n\
          Policies: {}\n",
         policy::NAMES.join(", ")
     );

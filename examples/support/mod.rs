@@ -6,6 +6,7 @@ pub mod last_frame;
 pub mod painter;
 pub mod picture;
 pub mod plots;
+pub mod reference;
 pub mod report;
 pub mod run;
 pub mod table;

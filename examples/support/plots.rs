@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
@@ -42,7 +43,7 @@ fn frame_time(path: &Path, summary: &Summary, frames: &[FrameRecord]) -> anyhow:
         let s = &summary.frame_ms;
         let title = format!("Frame time: median {:.2} ms, 99th percentile {:.2} ms", s.median, s.p99);
         let area = canvas::heading(sheet, &title, &subtitle(summary), &keys)?;
-        let mut chart = axes(&area, frames.len(), top, "milliseconds")?;
+        let mut chart = axes(&area, frames.len(), 0.0..top, "milliseconds")?;
         let mut below = vec![0.0; frames.len()];
         for (_, color, stage) in STAGES {
             let above: Vec<f64> = below.iter().zip(frames).map(|(b, f)| b + stage(f)).collect();
@@ -78,28 +79,28 @@ fn drawn_objects(path: &Path, summary: &Summary, frames: &[FrameRecord]) -> anyh
         ("box visible (the floor for any box-based method)", BOX_VISIBLE, 2, |f| f.box_visible),
         ("really visible", EXACT_VISIBLE, 2, |f| f.exact_visible),
     ];
-    let known: Vec<&Curve> =
-        curves.iter().filter(|(.., value)| frames.iter().all(|f| value(f).is_some())).collect();
-    let keys: Vec<Key> = known.iter().map(|&&(label, color, ..)| Key::new(color, label)).collect();
+    let known: Vec<Curve> =
+        curves.into_iter().filter(|(.., value)| frames.iter().all(|f| value(f).is_some())).collect();
+    let keys: Vec<Key> = known.iter().map(|&(label, color, ..)| Key::new(color, label)).collect();
     canvas::save(path, (SIZE.0, SIZE.1 + 280), |sheet| {
         let title = format!(
             "Objects drawn: {:.0} of the {:.0} in the frustum, of {} in the world (means)",
             summary.drawn.mean, summary.in_frustum.mean, summary.objects
         );
         let area = canvas::heading(sheet, &title, &subtitle(summary), &keys)?;
-        // The frustum's curve is often ten times higher than the others, which then look alike:
-        // the lower plot leaves it out.
+        let most = frames.iter().map(|f| f.in_frustum.max(f.drawn)).max().unwrap_or(0);
+        let top = nice_top(1.05 * f64::from(most));
+        // The frustum's curve is often fifty times higher than the others, which then look alike:
+        // the lower plot shows ratios.
         let (upper, lower) = area.split_vertically(px(390));
-        for (area, curves, unit) in
-            [(upper, &known[..], "objects"), (lower, &known[1..], "objects, without the frustum's curve")]
-        {
-            let counts = |f| curves.iter().filter_map(move |(.., value)| value(f));
-            let most = frames.iter().flat_map(counts).max().unwrap_or(0);
-            let mut chart = axes(&area, frames.len(), nice_top(1.05 * f64::from(most)), unit)?;
-            for (_, color, width, value) in curves {
-                let points = frames.iter().filter_map(|f| Some((f64::from(f.frame), f64::from(value(f)?))));
-                chart.draw_series(LineSeries::new(points, color.stroke_width(px(1) as u32 * width)))?;
-            }
+        let mut linear = axes(&upper, frames.len(), 0.0..top, "objects")?;
+        let mut ratios = axes(&lower, frames.len(), (1.0..top).log_scale(), "objects, logarithmic")?;
+        for (_, color, width, value) in known {
+            let style = color.stroke_width(px(1) as u32 * width);
+            let points: Vec<_> =
+                frames.iter().filter_map(|f| Some((f64::from(f.frame), f64::from(value(f)?)))).collect();
+            linear.draw_series(LineSeries::new(points.iter().copied(), style))?;
+            ratios.draw_series(LineSeries::new(points.iter().map(|&(x, y)| (x, y.max(1.0))), style))?;
         }
         Ok(())
     })
@@ -114,17 +115,24 @@ fn subtitle(summary: &Summary) -> String {
     )
 }
 
-type Chart<'a> = ChartContext<'a, BitMapBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Chart<'a, Y> = ChartContext<'a, BitMapBackend<'a>, Cartesian2d<RangedCoordf64, Y>>;
 
-fn axes<'a>(area: &Sheet<'a>, frames: usize, top: f64, unit: &str) -> anyhow::Result<Chart<'a>> {
-    let decimals = if top < 4.0 { 1 } else { 0 };
+fn axes<'a, Y>(
+    area: &Sheet<'a>,
+    frames: usize,
+    range: impl AsRangedCoord<CoordDescType = Y, Value = f64>,
+    unit: &str,
+) -> anyhow::Result<Chart<'a, Y>>
+where
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
     let last = frames.saturating_sub(1).max(1) as f64;
     let mut chart = ChartBuilder::on(area)
         .margin(px(20))
         .margin_top(px(6))
         .x_label_area_size(px(44))
         .y_label_area_size(px(66))
-        .build_cartesian_2d(0.0..last, 0.0..top)?;
+        .build_cartesian_2d(0.0..last, range)?;
     chart
         .configure_mesh()
         .disable_x_mesh()
@@ -136,7 +144,7 @@ fn axes<'a>(area: &Sheet<'a>, frames: usize, top: f64, unit: &str) -> anyhow::Re
         .x_desc("frame")
         .y_desc(unit)
         .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| format!("{y:.decimals$}"))
+        .y_label_formatter(&|y| format!("{y}"))
         .draw()?;
     Ok(chart)
 }

@@ -94,62 +94,99 @@ pub struct TreeFigures {
 /// `summary.json`. The order of the fields is the order of the keys.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// See [`Setting`].
     pub scene: String,
+    /// See [`Setting`].
     pub objects: usize,
+    /// See [`Setting`].
     pub triangles: u64,
+    /// See [`Setting`].
     pub policy: String,
+    /// See [`Setting`].
     pub backend: String,
+    /// See [`Setting`].
     pub adapter: Option<String>,
+    /// See [`Setting`].
     pub viewport: [u32; 2],
+    /// How many frames were measured.
     pub frames: usize,
+    /// See [`Setting`].
     pub seed: u64,
+    /// See [`FrameRecord::frame_ms`].
     pub frame_ms: Spread,
+    /// What the frame's time is made of.
     pub stage_ms: Stages,
+    /// See [`FrameRecord::drawn`].
     pub drawn: MeanMax,
+    /// See [`FrameRecord::drawn_triangles`].
     pub drawn_triangles: Mean,
+    /// See [`FrameRecord::in_frustum`].
     pub in_frustum: Mean,
+    /// See [`FrameRecord::queries`].
     pub queries: MeanMax,
+    /// See [`FrameRecord::query_boxes`].
     pub query_boxes: Mean,
+    /// See [`FrameRecord::waves`].
     pub waves: Mean,
+    /// See [`FrameRecord::state_changes`].
     pub state_changes: Mean,
+    /// The tree.
     pub tree: TreeFigures,
+    /// See [`FrameRecord::exact_visible`].
     pub exact_visible: Option<Mean>,
+    /// See [`FrameRecord::box_visible`].
     pub box_visible: Option<Mean>,
+    /// See [`FrameRecord::false_culls`]; the total of all frames.
     pub false_culls: Option<u64>,
+    /// See [`FrameRecord::wrong_pixels`].
     pub wrong_pixels: Option<MeanMax>,
 }
 
 /// How a figure is spread over the frames.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Spread {
+    /// The least.
     pub min: f64,
+    /// Half of the frames have no more.
     pub median: f64,
+    /// The sum over the number.
     pub mean: f64,
+    /// 99 of 100 frames have no more.
     pub p99: f64,
+    /// The greatest.
     pub max: f64,
 }
 
-/// Mean milliseconds a frame, stage by stage.
+/// Mean milliseconds a frame, stage by stage; see [`FrameRecord`].
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Stages {
+    /// Finding out what changed.
     pub sync: f64,
+    /// Keeping the tree.
     pub tree: f64,
+    /// Thinking.
     pub policy: f64,
+    /// Drawing.
     pub draw: f64,
+    /// Asking.
     pub query: f64,
+    /// Waiting.
     pub wait: f64,
 }
 
 /// A mean over the frames.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Mean {
+    /// The sum over the number.
     pub mean: f64,
 }
 
 /// A mean and the greatest value.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct MeanMax {
+    /// The sum over the number.
     pub mean: f64,
+    /// The greatest.
     pub max: f64,
 }
 

@@ -13,14 +13,14 @@ use tercet::draw::Drawable;
 use tercet::geom::{Frustum, View};
 use tercet::policy::Policy;
 use tercet::query::QueryBackend;
-use tercet::query::oracle::{Oracle, Truth};
 use tercet::query::software::SoftwareQueries;
-use tercet::scene::{Bounds, ObjectSet, Scene, SyncReport};
+use tercet::scene::{Bounds, Scene, SyncReport};
 use tercet::tree::TreeStats;
 use tercet::{Culler, FrameStats};
 
 use super::flags::Flags;
 use super::painter::Painter;
+use super::reference::Reference;
 use super::report::{self, FrameRecord, Setting, Summary, TreeFigures};
 use super::{last_frame, plots, table, top_view};
 
@@ -35,8 +35,7 @@ pub struct Run {
     bar: ProgressBar,
     started: Instant,
     records: Vec<FrameRecord>,
-    oracle: Option<Oracle>,
-    truth: Option<Truth>,
+    reference: Reference,
     view: Option<View>,
     /// The tree's counters after the first frame, which builds it.
     tree_built: TreeStats,
@@ -84,15 +83,15 @@ impl Run {
             flags.policy,
             flags.frames
         );
+        let painter = Painter { detail: flags.detail()? };
         let style = "{bar:40} frame {pos} of {len}, {elapsed} so far, {eta} left";
         Ok(Self {
-            painter: Painter { detail: flags.detail()? },
+            painter,
             setting,
             bar: ProgressBar::new(flags.frames.into()).with_style(ProgressStyle::with_template(style)?),
             started: Instant::now(),
             records: Vec::new(),
-            oracle: flags.oracle.then(Oracle::new),
-            truth: None,
+            reference: Reference::new(painter, flags.oracle),
             view: None,
             tree_built: TreeStats::default(),
             flags: flags.clone(),
@@ -110,31 +109,16 @@ impl Run {
         (done < all).then(|| done as f32 / (all - 1).max(1) as f32)
     }
 
-    /// Finds out what is really visible, where someone wants to know: `--oracle`, or the policy
-    /// that draws the exact set. To be called between sync and frame.
+    /// Looks at the frame beside the one that is measured: for `--oracle`, and for policies that
+    /// draw what a reference found. To be called between sync and frame.
     pub fn look(&mut self, scene: &Scene, world: &World, view: &View, eye: &mut Eye) -> anyhow::Result<()> {
-        let wanted = eye.policy().wants_exact();
-        if !wanted && self.oracle.is_none() {
-            return Ok(());
-        }
-        let painter = self.painter;
-        let oracle = self.oracle.get_or_insert_with(Oracle::new);
-        let truth = oracle.look(scene, view, |pass, objects| {
-            painter.draw(world, view, pass, objects);
-        })?;
-        if wanted {
-            let exact: Vec<_> =
-                scene.objects().map(|o| o.object.id).filter(|&id| truth.exact.contains(id)).collect();
-            eye.policy_mut().give_exact(&exact);
-        }
-        self.truth = Some(truth);
-        Ok(())
+        self.reference.look(scene, world, view, eye)
     }
 
     /// Takes a frame's figures.
     pub fn record(&mut self, frame: Frame<'_>) {
         let Frame { scene, view, eye, synced, stats, .. } = &frame;
-        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        let ms = |time: Duration| report::round(time.as_secs_f64() * 1e3);
         let tree = synced.tree_time + frame.adapted;
         let cull = stats.policy + stats.draw + stats.query + stats.wait;
         let frustum = Frustum::new(view);
@@ -157,18 +141,7 @@ impl Run {
             state_changes: stats.state_changes,
             ..Default::default()
         };
-        if let (true, Some(oracle), Some(truth)) = (self.flags.oracle, &self.oracle, &self.truth) {
-            let mut drawn = ObjectSet::default();
-            for object in eye.visible() {
-                drawn.insert(object.id);
-            }
-            let ids = scene.objects().map(|o| o.object.id);
-            let lost = ids.filter(|&id| truth.exact.contains(id) && !drawn.contains(id)).count();
-            record.exact_visible = Some(truth.exact.len() as u32);
-            record.box_visible = Some(truth.box_visible.len() as u32);
-            record.false_culls = Some(lost as u32);
-            record.wrong_pixels = Some(oracle.wrong_pixels(frame.queries));
-        }
+        self.reference.judge(scene, eye, frame.queries, &mut record);
         if self.records.is_empty() {
             self.tree_built = scene.tree().stats();
         }
@@ -193,7 +166,12 @@ impl Run {
         top_view::write(&out, &summary, scene, view, eye)?;
         last_frame::write(&out, scene, world, view, &self.painter)?;
         println!("{}", table::table(&summary));
-        println!("{} frames in {:.1} s; figures and pictures are in {}", summary.frames, taken.as_secs_f64(), out.display());
+        println!(
+            "{} frames in {:.1} s; figures and pictures are in {}",
+            summary.frames,
+            taken.as_secs_f64(),
+            out.display()
+        );
         Ok(summary)
     }
 

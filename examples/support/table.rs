@@ -49,7 +49,10 @@ fn rows(s: &Summary) -> Vec<(&'static str, String)> {
     rows.extend([
         (
             "questions",
-            format!("{:.1} in {:.1} waves, about {:.1} boxes", s.queries.mean, s.waves.mean, s.query_boxes.mean),
+            format!(
+                "{:.1} in {:.1} waves, about {:.1} boxes",
+                s.queries.mean, s.waves.mean, s.query_boxes.mean
+            ),
         ),
         ("state changes", format!("{:.1} between drawing and asking", s.state_changes.mean)),
         ("tree", format!("{} nodes, {} deep", s.tree.nodes, s.tree.depth)),

@@ -26,7 +26,7 @@ const CELLS: RGBColor = RGBColor(110, 160, 130);
 const FRUSTUM: RGBColor = RGBColor(252, 204, 60);
 
 /// What became of an object in the frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     /// Its box does not meet the view frustum.
     Outside,
@@ -102,16 +102,16 @@ fn save(
     let extent = extent(&marks, view);
     let shape = (extent.size().z / extent.size().x).clamp(0.4, 1.2);
     let size = (WIDTH, HEADING + (WIDTH as f32 * shape) as u32);
-    // What matters most comes last, on top; in each kind, large things (floors) come first.
+    // Small things come last, on top of the large ones that they stand in.
     let area = |m: &Mark| m.bounds.size().x * m.bounds.size().z;
-    marks.sort_by(|a, b| a.fate.cmp(&b.fate).then(area(b).total_cmp(&area(a))));
+    marks.sort_by(|a, b| area(b).total_cmp(&area(a)));
     canvas::save(path, size, |sheet| {
         let below = canvas::heading(sheet, "The last frame from above", subtitle, &keys)?;
         let map = Map::new(&below, &extent);
         let wedge = map.wedge(view);
         map.sheet.draw(&Polygon::new(wedge, FRUSTUM.mix(0.22)))?;
         for cell in cells {
-            map.sheet.draw(&Rectangle::new(map.rectangle(cell, 0), CELLS.mix(0.55).stroke_width(1)))?;
+            map.sheet.draw(&Rectangle::new(map.rectangle(cell, 0), CELLS.mix(0.22).stroke_width(1)))?;
         }
         for mark in &marks {
             map.object(mark)?;
@@ -160,9 +160,9 @@ impl<'a> Map<'a> {
     fn object(&self, mark: &Mark) -> anyhow::Result<()> {
         let corners = self.rectangle(&mark.bounds, px(2));
         let [(x0, y0), (x1, y1)] = corners;
-        // Floors and halls would hide what stands on them.
-        let share = ((x1 - x0) as f32 * (y1 - y0) as f32) / (self.size.x * self.size.y);
-        let opacity = if share > 0.02 { 0.06 } else { 0.75 };
+        // The larger, the fainter: storeys lie over each other, and floors would hide it all.
+        let side = (((x1 - x0) * (y1 - y0)) as f64).sqrt();
+        let opacity = (f64::from(px(5)) / side).clamp(0.04, 0.8);
         let color = match mark.fate {
             Fate::Drawn => DRAWN,
             Fate::Culled => CULLED,
@@ -170,8 +170,7 @@ impl<'a> Map<'a> {
         };
         self.sheet.draw(&Rectangle::new(corners, color.mix(opacity).filled()))?;
         if mark.straddles {
-            let color = STRADDLING.mix(if mark.fate == Fate::Outside { 0.35 } else { 0.9 });
-            self.sheet.draw(&Rectangle::new(corners, color.stroke_width(1)))?;
+            self.sheet.draw(&Rectangle::new(corners, STRADDLING.mix(0.6 * opacity).stroke_width(1)))?;
         }
         Ok(())
     }
