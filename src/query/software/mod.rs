@@ -9,6 +9,7 @@
 //! | `waves` | who does what, in which order, on which thread |
 //! | `depth`, `hi_z` | what is kept |
 //! | `count` | answers to questions |
+//! | `visibility` | who owns each pixel of a finished frame |
 //! | `simd` | the kernels for each instruction set |
 
 mod bin;
@@ -21,6 +22,7 @@ mod pass;
 mod raster;
 mod simd;
 mod vertex;
+mod visibility;
 mod waves;
 
 use std::ops::Range;
@@ -30,6 +32,7 @@ use rayon::prelude::*;
 pub use depth::DepthImage;
 pub use pass::{DrawCall, SoftwarePass};
 pub use simd::SimdLevel;
+pub use visibility::VisibilityImage;
 
 use super::{Answer, QueryBackend, Ticket, Wait, Want};
 use crate::Error;
@@ -129,6 +132,11 @@ impl SoftwareQueries {
         self.depth.image()
     }
 
+    /// The depth buffer as it lies in memory, padding included.
+    pub(crate) fn stored(&self) -> &[f32] {
+        self.depth.all()
+    }
+
     /// Counters since the frame began.
     pub fn stats(&self) -> SoftwareStats {
         self.stats
@@ -139,9 +147,9 @@ impl SoftwareQueries {
         self.depth.bytes() + self.hi_z.bytes()
     }
 
-    fn rasterise(&mut self, view: &View) {
+    /// Draws into the depth of the frame that has begun.
+    pub(crate) fn rasterise(&mut self, view: &View, calls: &[DrawCall]) {
         let screen = Screen::new(view);
-        let calls = self.pass.calls();
         let hi_z = &self.hi_z;
         self.waves.survey(calls, |call| {
             let mut footprint = Footprint::new(view, &screen, call);
@@ -220,8 +228,9 @@ impl QueryBackend for SoftwareQueries {
         self.pass.clear();
         record(&mut self.pass);
         if let Some(view) = self.view.take() {
-            self.rasterise(&view);
-            self.view = Some(view);
+            let pass = std::mem::take(&mut self.pass);
+            self.rasterise(&view, pass.calls());
+            (self.view, self.pass) = (Some(view), pass);
         }
         Ok(())
     }
