@@ -9,6 +9,8 @@ mod components;
 mod edit;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+#[cfg(feature = "gltf")]
+pub mod import;
 pub mod mesh;
 mod object;
 mod objects;
