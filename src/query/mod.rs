@@ -1,5 +1,8 @@
 //! Is it hidden? A backend owns the depth of one frame and answers questions about boxes.
 
+pub mod oracle;
+pub mod software;
+
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::scene::ObjectSet;

@@ -1,0 +1,276 @@
+//! The software backend: exact rasterisation and exact answers on the CPU, in parallel.
+//!
+//! | file | |
+//! |---|---|
+//! | `pass` | what the app's closure records |
+//! | `instance` | a draw call against the view |
+//! | `vertex`, `clip` | object space to snapped screen coordinates |
+//! | `bin`, `raster` | triangles to samples |
+//! | `waves` | who does what, in which order, on which thread |
+//! | `depth`, `hi_z` | what is kept |
+//! | `count` | answers to questions |
+//! | `visibility` | who owns each pixel of a finished frame |
+//! | `simd` | the kernels for each instruction set |
+
+mod bin;
+mod clip;
+mod count;
+mod depth;
+mod hi_z;
+mod instance;
+mod pass;
+mod raster;
+mod simd;
+mod vertex;
+mod visibility;
+mod waves;
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+pub use depth::DepthImage;
+pub use pass::{DrawCall, SoftwarePass};
+pub use simd::SimdLevel;
+pub use visibility::VisibilityImage;
+
+use super::{Answer, QueryBackend, Ticket, Wait, Want};
+use crate::Error;
+use crate::geom::{Proxy, View};
+use depth::Depth;
+use hi_z::HiZ;
+use instance::Footprint;
+use vertex::Screen;
+use waves::{MOST_BANDS, Waves};
+
+/// Counters since [`QueryBackend::begin`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SoftwareStats {
+    /// Draw calls recorded.
+    pub calls: u64,
+    /// Draw calls that were skipped whole: out of view, or behind what was already drawn.
+    pub skipped_calls: u64,
+    /// Triangles of the draw calls that were not skipped.
+    pub triangles: u64,
+    /// Triangles of those that had a sample in their bounding box.
+    pub rasterised: u64,
+    /// Boxes asked about.
+    pub boxes: u64,
+}
+
+/// The software backend: a depth buffer on the CPU and the questions put to it.
+///
+/// Triangles are rasterised exactly (top-left rule, pixel centres, 1/256 pixel), on the threads of
+/// the current rayon pool; results are the same bits for any number of threads and any
+/// [`SimdLevel`]. Multisampled views get one sample a pixel, at its centre.
+#[derive(Debug)]
+pub struct SoftwareQueries {
+    simd: SimdLevel,
+    view: Option<View>,
+    depth: Depth,
+    hi_z: HiZ,
+    pass: SoftwarePass,
+    waves: Waves,
+    asked: Vec<Asked>,
+    proxies: Vec<Proxy>,
+    /// One for each proxy of an answered question.
+    found: Vec<Found>,
+    /// Questions of `asked` from here on are not answered yet.
+    answered: usize,
+    stats: SoftwareStats,
+}
+
+#[derive(Clone, Debug)]
+struct Asked {
+    ticket: Ticket,
+    want: Want,
+    proxies: Range<usize>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    visible: u32,
+    total: u32,
+}
+
+impl Default for SoftwareQueries {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl SoftwareQueries {
+    /// A backend at the machine's best [`SimdLevel`]. It has no size until a frame begins.
+    pub fn new() -> Self {
+        Self::with_level(SimdLevel::detect())
+    }
+
+    /// A backend at a given level, or at the best that the machine has if that is less.
+    pub fn with_level(level: SimdLevel) -> Self {
+        Self {
+            simd: level.min(SimdLevel::detect()),
+            view: None,
+            depth: Depth::default(),
+            hi_z: HiZ::default(),
+            pass: SoftwarePass::default(),
+            waves: Waves::default(),
+            asked: Vec::new(),
+            proxies: Vec::new(),
+            found: Vec::new(),
+            answered: 0,
+            stats: SoftwareStats::default(),
+        }
+    }
+
+    /// The level in use.
+    pub fn level(&self) -> SimdLevel {
+        self.simd
+    }
+
+    /// The depth of the frame so far.
+    pub fn depth(&self) -> DepthImage<'_> {
+        self.depth.image()
+    }
+
+    /// The depth buffer as it lies in memory, padding included.
+    pub(crate) fn stored(&self) -> &[f32] {
+        self.depth.all()
+    }
+
+    /// Counters since the frame began.
+    pub fn stats(&self) -> SoftwareStats {
+        self.stats
+    }
+
+    /// Memory held by the depth buffer and its hierarchy, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.depth.bytes() + self.hi_z.bytes()
+    }
+
+    /// Draws into the depth of the frame that has begun.
+    pub(crate) fn rasterise(&mut self, view: &View, calls: &[DrawCall]) {
+        let screen = Screen::new(view);
+        let hi_z = &self.hi_z;
+        self.waves.survey(calls, |call| {
+            let mut footprint = Footprint::new(view, &screen, call);
+            // Nothing nearer than what is there: the greatest nearness stays as it is.
+            if footprint.rect.is_some_and(|rect| footprint.nearest <= hi_z.farthest(&rect)) {
+                footprint.rect = None;
+            }
+            footprint
+        });
+        for rect in self.waves.footprints().iter().filter_map(|f| f.rect.as_ref()) {
+            self.hi_z.touch(rect);
+        }
+        let height = view.viewport().height;
+        let band_rows = waves::band_rows(height);
+        let bands = (height as usize).div_ceil(band_rows);
+        let mut sinks = self.depth.sinks::<MOST_BANDS>(band_rows);
+        let work = self.waves.rasterise(self.simd, screen, calls, band_rows, &mut sinks[..bands]);
+        self.stats.calls += calls.len() as u64;
+        self.stats.skipped_calls += calls.len() as u64 - work.calls;
+        self.stats.triangles += work.triangles;
+        self.stats.rasterised += work.kept;
+    }
+
+    /// Answers everything asked so far, against the depth as it is now.
+    fn answer(&mut self) {
+        if self.answered == self.asked.len() {
+            return;
+        }
+        self.hi_z.refresh(self.simd, &self.depth);
+        let scene = count::Scene { depth: &self.depth, hi_z: &self.hi_z };
+        let (simd, proxies) = (self.simd, &self.proxies);
+        let first = self.found.len();
+        self.found.resize(proxies.len(), Found::default());
+        for asked in &self.asked[self.answered..] {
+            // Any answers are told from dual ones by their total.
+            let total = u32::from(asked.want == Want::Dual);
+            self.found[asked.proxies.clone()].fill(Found { visible: 0, total });
+        }
+        let answer = |(found, proxy): (&mut Found, &Proxy)| {
+            *found = if found.total == 1 {
+                let (visible, total) = simd::dual(simd, scene, proxy);
+                Found { visible, total }
+            } else {
+                Found { visible: u32::from(simd::any(simd, scene, proxy)), total: 0 }
+            };
+        };
+        self.found[first..].par_iter_mut().zip(&proxies[first..]).with_min_len(16).for_each(answer);
+        self.answered = self.asked.len();
+    }
+}
+
+impl QueryBackend for SoftwareQueries {
+    type Pass = SoftwarePass;
+
+    fn name(&self) -> &'static str {
+        "software"
+    }
+
+    fn can_block(&self) -> bool {
+        true
+    }
+
+    fn begin(&mut self, view: &View) -> Result<(), Error> {
+        let (viewport, cleared) = (view.viewport(), view.depth().cleared());
+        self.depth.reset(viewport.width, viewport.height, cleared);
+        self.hi_z.reset(viewport.width, viewport.height, cleared);
+        self.view = Some(view.clone());
+        self.forget();
+        self.stats = SoftwareStats::default();
+        Ok(())
+    }
+
+    fn draw(&mut self, record: impl FnOnce(&mut SoftwarePass)) -> Result<(), Error> {
+        // What was asked before must not see what is drawn now.
+        self.answer();
+        self.pass.clear();
+        record(&mut self.pass);
+        if let Some(view) = self.view.take() {
+            let pass = std::mem::take(&mut self.pass);
+            self.rasterise(&view, pass.calls());
+            (self.view, self.pass) = (Some(view), pass);
+        }
+        Ok(())
+    }
+
+    fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
+        let first = self.proxies.len();
+        self.proxies.extend_from_slice(boxes);
+        self.asked.push(Asked { ticket, want, proxies: first..self.proxies.len() });
+        self.stats.boxes += boxes.len() as u64;
+        Ok(())
+    }
+
+    fn answers(&mut self, _: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
+        self.answer();
+        for asked in &self.asked {
+            let found = &self.found[asked.proxies.clone()];
+            let usable = self.proxies[asked.proxies.clone()].iter().all(count::is_usable);
+            let answer = match (asked.want, found) {
+                (Want::Any, found) => Answer::Any(!usable || found.iter().any(|f| f.visible > 0)),
+                (Want::Dual, [f]) if usable => Answer::Dual { visible: f.visible, total: f.total },
+                (Want::Dual, _) => Answer::Unknown,
+            };
+            deliver(asked.ticket, answer);
+        }
+        self.forget();
+        Ok(())
+    }
+
+    fn end(&mut self) -> Result<(), Error> {
+        self.forget();
+        self.pass.clear();
+        Ok(())
+    }
+}
+
+impl SoftwareQueries {
+    fn forget(&mut self) {
+        self.asked.clear();
+        self.proxies.clear();
+        self.found.clear();
+        self.answered = 0;
+    }
+}

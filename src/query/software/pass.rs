@@ -1,0 +1,56 @@
+//! What the app's closure records into: draw calls, kept until the pass is rasterised.
+
+use glam::Affine3A;
+
+use crate::scene::mesh::{Level, Mesh};
+
+/// One draw call: a level of a mesh and where it stands.
+#[derive(Clone, Debug)]
+pub struct DrawCall {
+    /// The mesh; a handle.
+    pub mesh: Mesh,
+    /// Which of [`Mesh::levels`] is drawn, 0 for the finest.
+    pub level: usize,
+    /// Object space to the scene's world space.
+    pub world_from_object: Affine3A,
+}
+
+impl DrawCall {
+    /// The level's triangles.
+    pub fn geometry(&self) -> &Level {
+        &self.mesh.levels()[self.level]
+    }
+
+    /// How many triangles the call draws.
+    pub fn triangle_count(&self) -> usize {
+        self.geometry().indices.len() / 3
+    }
+}
+
+/// The software backend's pass: the draw calls of one flush, in order.
+#[derive(Debug, Default)]
+pub struct SoftwarePass {
+    calls: Vec<DrawCall>,
+}
+
+impl SoftwarePass {
+    /// Draws a mesh in its finest level, both sides of each triangle. O(1): a pointer is copied.
+    pub fn draw_mesh(&mut self, mesh: &Mesh, world_from_object: &Affine3A) {
+        self.draw_level(mesh, 0, world_from_object);
+    }
+
+    /// Draws one level of a mesh; a level beyond the last draws the last.
+    pub fn draw_level(&mut self, mesh: &Mesh, level: usize, world_from_object: &Affine3A) {
+        let level = level.min(mesh.levels().len() - 1);
+        self.calls.push(DrawCall { mesh: mesh.clone(), level, world_from_object: *world_from_object });
+    }
+
+    /// What was drawn so far.
+    pub fn calls(&self) -> &[DrawCall] {
+        &self.calls
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.calls.clear();
+    }
+}

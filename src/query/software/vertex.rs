@@ -1,0 +1,137 @@
+//! Vertices: object space to snapped screen coordinates.
+//!
+//! Everything is f32, unfused, in one fixed order, so that a vertex lands on the same spot
+//! whoever transforms it: that keeps shared edges watertight and re-rasterised triangles equal.
+
+use glam::{Affine3A, DMat4, DVec4, Mat4, Vec3, Vec4};
+
+use crate::geom::{DepthDirection, View};
+
+/// Subpixel steps a pixel, as a power of two.
+pub(crate) const SUBPIXEL_BITS: u32 = 8;
+/// Subpixel steps a pixel.
+pub(crate) const SUBPIXELS: i32 = 1 << SUBPIXEL_BITS;
+
+/// A vertex farther than this from the viewport's centre, in subpixels, is clipped first. It lies
+/// a little inside the planes that [`clip`](super::clip) cuts at, so that a vertex without a code
+/// is never cut.
+pub(crate) const GUARD_LIMIT: f32 = 0.98 * 4_194_304.0;
+
+/// The vertex lies before the near plane of reversed z (`w - z < 0`), which is the far plane of
+/// standard z, or is not a number.
+pub(crate) const CODE_W_MINUS_Z: u32 = 1;
+/// The vertex lies beyond the other plane (`z < 0`), or is not a number.
+pub(crate) const CODE_Z: u32 = 2;
+/// The vertex lies outside the guard band or is not finite.
+pub(crate) const CODE_GUARD: u32 = 4;
+
+/// A transformed vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(16))]
+pub(crate) struct Vertex {
+    /// Column in subpixels of the viewport; meaningless if `code` is not 0.
+    pub(crate) x: i32,
+    /// Row in subpixels of the viewport, downward.
+    pub(crate) y: i32,
+    /// See [`DepthDirection::nearness`].
+    pub(crate) nearness: f32,
+    /// 0 for a vertex that needs no clipping.
+    pub(crate) code: u32,
+}
+
+/// How clip space lands on the viewport.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Screen {
+    /// Width in pixels.
+    pub(crate) width: i32,
+    /// Height in pixels.
+    pub(crate) height: i32,
+    /// Half the width in subpixels: subpixels from the centre per unit of normalised x.
+    pub(crate) scale_x: f32,
+    /// The same for y, negative since rows go down.
+    pub(crate) scale_y: f32,
+    /// 1 where nearness is depth, -1 where it is minus depth.
+    pub(crate) sign: f32,
+}
+
+impl Screen {
+    pub(crate) fn new(view: &View) -> Self {
+        let viewport = view.viewport();
+        let half = (SUBPIXELS / 2) as f32;
+        Self {
+            width: viewport.width as i32,
+            height: viewport.height as i32,
+            // At most 2^21: exact.
+            scale_x: viewport.width as f32 * half,
+            scale_y: -(viewport.height as f32 * half),
+            sign: match view.depth() {
+                DepthDirection::Reversed => 1.0,
+                DepthDirection::Standard => -1.0,
+            },
+        }
+    }
+
+    /// A clip-space point on the screen.
+    #[inline(always)]
+    pub(crate) fn project(&self, x: f32, y: f32, z: f32, w: f32) -> Vertex {
+        let inverse = 1.0 / w;
+        let sx = x * inverse * self.scale_x;
+        let sy = y * inverse * self.scale_y;
+        // Written so that NaN sets the bit. 0 ≤ z ≤ w leaves w = 0 only with z = 0: then the
+        // position is infinite or NaN and the guard bit is set.
+        let code = u32::from(!(w - z >= 0.0)) * CODE_W_MINUS_Z
+            + u32::from(!(z >= 0.0)) * CODE_Z
+            + u32::from(!(sx.abs() <= GUARD_LIMIT && sy.abs() <= GUARD_LIMIT)) * CODE_GUARD;
+        Vertex {
+            x: snap(sx).wrapping_add(self.width * (SUBPIXELS / 2)),
+            y: snap(sy).wrapping_add(self.height * (SUBPIXELS / 2)),
+            nearness: self.sign * (z / w),
+            code,
+        }
+    }
+}
+
+/// The clip-space image of an object-space point, in the one order of operations that every
+/// vertex takes.
+#[inline(always)]
+pub(crate) fn clip_position(clip_from_object: &Mat4, p: Vec3) -> Vec4 {
+    let m = clip_from_object;
+    Vec4::new(
+        ((m.x_axis.x * p.x + m.y_axis.x * p.y) + m.z_axis.x * p.z) + m.w_axis.x,
+        ((m.x_axis.y * p.x + m.y_axis.y * p.y) + m.z_axis.y * p.z) + m.w_axis.y,
+        ((m.x_axis.z * p.x + m.y_axis.z * p.y) + m.z_axis.z * p.z) + m.w_axis.z,
+        ((m.x_axis.w * p.x + m.y_axis.w * p.y) + m.z_axis.w * p.z) + m.w_axis.w,
+    )
+}
+
+/// The product of view and transform, taken in f64 and rounded once.
+pub(crate) fn clip_from_object(clip_from_world: &DMat4, world_from_object: &Affine3A) -> Mat4 {
+    let m = world_from_object.matrix3;
+    let column = |v: glam::Vec3A, w: f64| -> Vec4 {
+        let v = DVec4::new(f64::from(v.x), f64::from(v.y), f64::from(v.z), w);
+        (*clip_from_world * v).as_vec4()
+    };
+    Mat4::from_cols(
+        column(m.x_axis, 0.0),
+        column(m.y_axis, 0.0),
+        column(m.z_axis, 0.0),
+        column(world_from_object.translation, 1.0),
+    )
+}
+
+/// Transforms positions into `out`, which is as long.
+#[inline(always)]
+pub(crate) fn transform(screen: &Screen, clip_from_object: &Mat4, positions: &[Vec3], out: &mut [Vertex]) {
+    for (vertex, &position) in out.iter_mut().zip(positions) {
+        let clip = clip_position(clip_from_object, position);
+        *vertex = screen.project(clip.x, clip.y, clip.z, clip.w);
+    }
+}
+
+/// The nearest integer, ties to even, for |v| ≤ 2²²: adding 1.5·2²³ leaves the integer in the low
+/// bits of the mantissa. Without a float-to-integer conversion, which saturates slowly in Rust.
+#[inline(always)]
+fn snap(v: f32) -> i32 {
+    const MAGIC: f32 = 12_582_912.0;
+    ((v + MAGIC).to_bits() as i32).wrapping_sub(MAGIC.to_bits() as i32)
+}

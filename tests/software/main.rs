@@ -1,0 +1,6 @@
+//! The software backend against slow, independent references.
+
+mod clipping;
+mod coverage;
+mod questions;
+mod support;
