@@ -97,7 +97,8 @@ fn drawn_objects(path: &Path, summary: &Summary, frames: &[FrameRecord]) -> anyh
         // the lower plot shows ratios.
         let (upper, lower) = area.split_vertically(px(390));
         let mut linear = axes(&upper, frames.len(), 0.0..top, "objects")?;
-        let mut ratios = axes(&lower, frames.len(), (bottom..top.max(2.0 * bottom)).log_scale(), "objects, logarithmic")?;
+        let mut ratios =
+            axes(&lower, frames.len(), (bottom..top.max(2.0 * bottom)).log_scale(), "objects, logarithmic")?;
         for (_, color, width, value) in &known {
             let style = color.stroke_width(px(1) as u32 * width);
             let points: Vec<_> =
