@@ -75,7 +75,7 @@ fn answers_equal_the_plain_loop() {
             pool(threads).install(|| {
                 for level in LEVELS {
                     let mut queries = SoftwareQueries::with_level(level);
-                    draw(&mut queries, &view, &[near.clone()]);
+                    draw(&mut queries, &view, std::slice::from_ref(&near));
                     // The second wave sees a hierarchy that was brought up to date in part.
                     for more in [None, Some(&far)] {
                         if let Some(mesh) = more {
