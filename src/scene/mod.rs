@@ -11,6 +11,8 @@ mod components;
 mod edit;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+#[cfg(feature = "gltf")]
+pub mod import;
 #[cfg(feature = "lod")]
 pub mod lod;
 pub mod mesh;

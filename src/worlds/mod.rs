@@ -16,7 +16,7 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
 use crate::draw::Drawable;
 use crate::geom::Aabb;
-use crate::scene::Bounds;
+use crate::scene::{Bounds, NotOccluder};
 use crate::scene::mesh::Mesh;
 
 pub use path::{CameraPath, Pose};
@@ -51,6 +51,8 @@ pub struct Placed {
     pub bounds: Aabb,
     /// Red, green and blue, as sRGB shows them.
     pub color: [u8; 3],
+    /// Whether it is spawned as a [`NotOccluder`].
+    pub not_occluder: bool,
 }
 
 impl Model {
@@ -66,7 +68,7 @@ impl Model {
     pub fn place(&mut self, mesh: usize, world_from_object: Affine3A, color: [u8; 3]) {
         let bounds = self.meshes[mesh].bounds().transformed(&world_from_object);
         self.bounds = self.bounds.union(&bounds);
-        self.objects.push(Placed { mesh, world_from_object, bounds, color });
+        self.objects.push(Placed { mesh, world_from_object, bounds, color, not_occluder: false });
     }
 
     /// Triangles of all objects at full detail.
@@ -74,15 +76,19 @@ impl Model {
         self.objects.iter().map(|o| self.meshes[o.mesh].triangle_count() as u64).sum()
     }
 
-    /// Spawns every object with [`Bounds`] and [`Drawable`], in order.
+    /// Spawns every object with [`Bounds`], [`Drawable`] and, where it says so, [`NotOccluder`],
+    /// in order.
     pub fn spawn(&self, world: &mut hecs::World) {
-        world
-            .spawn_batch(self.objects.iter().map(|o| {
-                let mesh = self.meshes[o.mesh].clone();
-                let drawable = Drawable { mesh, world_from_object: o.world_from_object, color: o.color };
-                (Bounds(o.bounds), drawable)
-            }))
-            .for_each(drop);
+        world.reserve::<(Bounds, Drawable)>(self.objects.len() as u32);
+        for o in &self.objects {
+            let mesh = self.meshes[o.mesh].clone();
+            let drawable = Drawable { mesh, world_from_object: o.world_from_object, color: o.color };
+            if o.not_occluder {
+                world.spawn((Bounds(o.bounds), drawable, NotOccluder));
+            } else {
+                world.spawn((Bounds(o.bounds), drawable));
+            }
+        }
     }
 }
 

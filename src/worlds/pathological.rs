@@ -106,7 +106,7 @@ impl World {
         bounds.max += shift;
         self.model.bounds = self.model.bounds.union(&bounds);
         let world_from_object = Affine3A::from_translation(shift);
-        self.model.objects.push(Placed { mesh, world_from_object, bounds, color });
+        self.model.objects.push(Placed { mesh, world_from_object, bounds, color, not_occluder: false });
     }
 
     fn cubes(&mut self, count: usize, min: Vec3, max: Vec3) {
