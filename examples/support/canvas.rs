@@ -1,9 +1,12 @@
 //! A sheet of paper for the plots: text in our own font, smooth lines, PNG out.
 
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::Path;
 use std::sync::Once;
 
 use anyhow::{Context, anyhow};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{RgbImage, imageops};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -51,9 +54,18 @@ pub fn save(
         sheet.present()?;
     }
     let large = RgbImage::from_raw(w, h, pixels).ok_or_else(|| anyhow!("the sheet has the wrong size"))?;
-    imageops::resize(&large, width, height, imageops::FilterType::Triangle)
-        .save(path)
-        .with_context(|| format!("cannot write {}", path.display()))
+    shrink(path, &large, (width, height))
+}
+
+/// Shrinks a picture to `width` × `height` pixels, which smooths it, and saves it as a PNG file.
+pub fn shrink(path: &Path, large: &RgbImage, (width, height): (u32, u32)) -> anyhow::Result<()> {
+    let small = imageops::resize(large, width, height, imageops::FilterType::CatmullRom);
+    let write = || -> anyhow::Result<()> {
+        let file = BufWriter::new(File::create(path)?);
+        let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive);
+        Ok(small.write_with_encoder(encoder)?)
+    };
+    write().with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// A swatch of the legend.

@@ -4,11 +4,13 @@
 
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use glam::{Mat4, Vec2, Vec3};
-use image::{RgbImage, imageops};
+use image::RgbImage;
 use rayon::prelude::*;
 use tercet::geom::View;
+
+use super::canvas;
 
 /// What one pixel shows.
 #[derive(Clone, Copy, Debug)]
@@ -50,15 +52,11 @@ pub fn save(path: &Path, view: &View, surfaces: &[Option<Surface>], fog: f32) ->
     let light: Vec<Vec3> =
         (0..surfaces.len()).into_par_iter().map(|at| shot.light(at, open[at], fog)).collect();
     let exposure = exposure(&light);
-    let pixels: Vec<u8> = (0..light.len())
-        .into_par_iter()
-        .flat_map_iter(|at| encode(light[at] * exposure, shot.pixel(at)))
-        .collect();
+    let pixels: Vec<u8> =
+        (0..light.len()).into_par_iter().flat_map_iter(|at| encode(light[at] * exposure)).collect();
     let large = RgbImage::from_raw(width, height, pixels)
         .ok_or_else(|| anyhow!("{} pixels do not fill {width} × {height}", surfaces.len()))?;
-    imageops::resize(&large, (width / 2).max(1), (height / 2).max(1), imageops::FilterType::CatmullRom)
-        .save(path)
-        .with_context(|| format!("cannot write {}", path.display()))
+    canvas::shrink(path, &large, ((width / 2).max(1), (height / 2).max(1)))
 }
 
 /// A view and what it shows.
@@ -219,10 +217,9 @@ fn exposure(light: &[Vec3]) -> f32 {
     (MIDDLE / mean).sqrt().clamp(0.5, 2.5)
 }
 
-/// Linear light to sRGB bytes, with highlights rolled off and half a step of noise against bands.
-fn encode(light: Vec3, (x, y): (usize, usize)) -> [u8; 3] {
-    let noise = speckle(x, y);
-    filmic(light).to_array().map(|c| (to_srgb(c) * 255.0 + noise).clamp(0.0, 255.0) as u8)
+/// Linear light to sRGB bytes, with highlights rolled off.
+fn encode(light: Vec3) -> [u8; 3] {
+    filmic(light).to_array().map(|c| (to_srgb(c) * 255.0).round() as u8)
 }
 
 /// Narkowicz's fit of the ACES curve (2015).
