@@ -14,8 +14,8 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
 use crate::draw::Drawable;
 use crate::geom::Aabb;
-use crate::scene::{Bounds, NotOccluder};
 use crate::scene::mesh::Mesh;
+use crate::scene::{Bounds, NotOccluder};
 
 pub use path::{CameraPath, Pose};
 pub use power_plant::power_plant;

@@ -141,9 +141,10 @@ impl<'a> Elements<'a> {
         /// As many as the largest element has.
         const ZEROS: [u8; 16] = [0; 16];
         which.map(move |i| {
-            let replaced = self.values.as_ref().and_then(|values| {
-                Some(values.element(self.replaced.binary_search(&(i as u32)).ok()?))
-            });
+            let replaced = self
+                .values
+                .as_ref()
+                .and_then(|values| Some(values.element(self.replaced.binary_search(&(i as u32)).ok()?)));
             let base = || self.base.as_ref().map(|base| base.element(i));
             decode(replaced.or_else(base).unwrap_or(&ZEROS))
         })
@@ -180,11 +181,7 @@ impl<'a> Strided<'a> {
 }
 
 /// The elements that a sparse accessor replaces, ascending.
-fn sparse_indices(
-    file: &File,
-    sparse: &accessor::sparse::Sparse,
-    count: usize,
-) -> Result<Vec<u32>, String> {
+fn sparse_indices(file: &File, sparse: &accessor::sparse::Sparse, count: usize) -> Result<Vec<u32>, String> {
     let Checked::Valid(component) = sparse.indices.component_type else {
         return Err("the componentType of its indices is not one of unsigned integers".into());
     };

@@ -126,10 +126,11 @@ fn chunks(bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>), String> 
 
 fn parse(json: &[u8]) -> Result<Root, String> {
     let mut text = serde_json::Deserializer::from_slice(json);
-    let root = serde_path_to_error::deserialize(&mut text).map_err(|e| match e.path().to_string().as_str() {
-        "." => format!("not glTF: {}", e.inner()),
-        path => format!("{path}: {}", e.inner()),
-    })?;
+    let root =
+        serde_path_to_error::deserialize(&mut text).map_err(|e| match e.path().to_string().as_str() {
+            "." => format!("not glTF: {}", e.inner()),
+            path => format!("{path}: {}", e.inner()),
+        })?;
     text.end().map_err(|e| format!("not glTF: {e}"))?;
     Ok(root)
 }

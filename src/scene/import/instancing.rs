@@ -19,7 +19,8 @@ const ROTATIONS: Wanted = Wanted {
 
 /// Where a node's mesh is, relative to the node: in one place, unless the extension lists more.
 pub(super) fn transforms(file: &File, node: &Node) -> Result<Vec<DAffine3>, String> {
-    let Some(extension) = node.extensions.as_ref().and_then(|e| e.others.get("EXT_mesh_gpu_instancing")) else {
+    let Some(extension) = node.extensions.as_ref().and_then(|e| e.others.get("EXT_mesh_gpu_instancing"))
+    else {
         return Ok(vec![DAffine3::IDENTITY]);
     };
     read(file, extension).map_err(|why| format!("EXT_mesh_gpu_instancing: {why}"))

@@ -24,7 +24,8 @@ pub(super) fn look(file: &File, material: Option<Index<Material>>) -> Result<Loo
     let extensions = material.extensions.as_ref();
     let older = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref()).map(|p| p.diffuse_factor.0);
     let [red, green, blue, _] = older.unwrap_or(material.pbr_metallic_roughness.base_color_factor.0);
-    let glass = extensions.and_then(|e| e.transmission.as_ref()).is_some_and(|t| t.transmission_factor.0 > 0.0);
+    let glass =
+        extensions.and_then(|e| e.transmission.as_ref()).is_some_and(|t| t.transmission_factor.0 > 0.0);
     Ok(Look { color: [red, green, blue].map(srgb), see_through: glass || alpha != AlphaMode::Opaque })
 }
 

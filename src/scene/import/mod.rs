@@ -38,8 +38,8 @@ use file::File;
 use material::Look;
 use nodes::Place;
 use primitive::{Reason, Shape};
-pub use report::{ImportReport, Remark};
 use report::named;
+pub use report::{ImportReport, Remark};
 
 /// More objects than this are refused: with instancing, a small file can claim any number.
 const MOST_OBJECTS: usize = 1 << 24;
@@ -150,9 +150,7 @@ impl Catalogue {
         let read: Vec<Result<Result<Mesh, Reason>, String>> = self
             .shapes
             .par_iter()
-            .map(|(shape, name)| {
-                primitive::read(file, *shape, name).map_err(|why| format!("{name}: {why}"))
-            })
+            .map(|(shape, name)| primitive::read(file, *shape, name).map_err(|why| format!("{name}: {why}")))
             .collect();
         let mut meshes = Vec::new();
         let mut numbers: Vec<Result<usize, Reason>> = Vec::new();

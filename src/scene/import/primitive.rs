@@ -90,7 +90,8 @@ fn triangles(indices: Vec<u32>, topology: Topology) -> Result<Vec<u32>, String> 
         }
         Topology::List => Ok(indices),
         Topology::Strip => {
-            let turned = |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+            let turned =
+                |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
             Ok(indices.windows(3).enumerate().map(turned).filter(|t| !flat(t)).flatten().collect())
         }
         Topology::Fan => {
