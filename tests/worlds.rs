@@ -1,61 +1,308 @@
 //! The seeded worlds are what they claim to be, and the same on every machine.
 
-use tercet::worlds;
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+use tercet::draw::Drawable;
+use tercet::geom::Aabb;
+use tercet::scene::Bounds;
+use tercet::scene::mesh::{Level, Mesh};
+use tercet::worlds::{self, CameraPath, Model, Motion, Pathology, Placed, Swarm, power_plant};
 
 #[test]
-fn probe() {
-    let t = std::time::Instant::now();
-    let plant = worlds::power_plant(1, 1.0);
-    println!(
-        "{} objects, {} triangles, {:?}, bounds {:?}",
-        plant.objects.len(),
-        plant.triangles(),
-        t.elapsed(),
-        plant.bounds
-    );
-    let mut uses = vec![0usize; plant.meshes.len()];
-    for o in &plant.objects {
-        uses[o.mesh] += 1;
+fn the_plant_has_as_many_objects_and_triangles_as_the_papers() {
+    for seed in [0, 1, 2, 42] {
+        let plant = worlds::power_plant(seed, 1.0);
+        assert_eq!(plant.objects.len(), 11_050, "seed {seed}");
+        let millions = plant.triangles() as f64 * 1e-6;
+        assert!((18.0..19.5).contains(&millions), "seed {seed}: {millions} million triangles");
+        let size = plant.bounds.size();
+        assert!(size.x <= 160.0 && size.y <= 55.0 && size.z <= 110.0, "seed {seed}: {size} m");
+        assert!(plant.meshes.len() < 60, "the meshes are shared");
     }
-    for (m, n) in plant.meshes.iter().zip(&uses) {
-        println!(
-            "{:20} {:6} x {:6} = {:9}  {:?}",
-            m.name(),
-            n,
-            m.triangle_count(),
-            n * m.triangle_count(),
-            m.levels().iter().map(|l| (l.indices.len() / 3, l.error)).collect::<Vec<_>>()
-        );
+}
+
+#[test]
+fn scale_changes_the_number_of_objects() {
+    for (scale, objects) in [(0.1, 1105), (0.25, 2763), (0.5, 5525), (2.0, 22_100)] {
+        assert_eq!(worlds::power_plant(3, scale).objects.len(), objects, "scale {scale}");
     }
-    let path = worlds::power_plant::path(1.0);
-    let mut worst: Vec<(f32, usize, usize)> = vec![];
-    for n in 0..=2000 {
-        let eye = path.pose(n as f32 / 2000.0).eye;
-        for (i, o) in plant.objects.iter().enumerate() {
-            let d = o.bounds.distance_squared(eye).sqrt();
-            if d < 0.3 {
-                worst.push((d, n, i));
+    let least = worlds::power_plant(3, 1e-3).objects.len();
+    assert!((250..500).contains(&least), "the bare building has {least} objects");
+}
+
+/// Pinned: a change here means that worlds of an old version are not those of the new one, and
+/// measurements cannot be compared.
+#[test]
+fn a_seed_makes_the_same_world_bit_for_bit() {
+    assert_eq!(fingerprint(&worlds::power_plant(1, 0.1)), 0x1994_3B83_77A1_EC49);
+    assert_eq!(fingerprint(&worlds::random(1, 200)), 0x5BA0_C971_2D50_07F8);
+    let pathological = Pathology::ALL.map(|kind| fingerprint(&worlds::pathological(kind)));
+    assert_eq!(pathological.iter().fold(0, |all, one| all ^ one), 0xE606_8D5E_925C_6346);
+    assert_ne!(fingerprint(&worlds::power_plant(2, 0.1)), fingerprint(&worlds::power_plant(1, 0.1)));
+}
+
+#[test]
+fn nothing_stands_in_the_cameras_way() {
+    const MARGIN: f32 = 0.25;
+    for (seed, scale) in [(1, 1.0), (7, 0.3), (3, 0.1), (5, 0.01), (2, 2.5)] {
+        let plant = worlds::power_plant(seed, scale);
+        let path = power_plant::path(scale);
+        let solids: Vec<Aabb> = plant.objects.iter().flat_map(|o| solids(&plant, o)).collect();
+        for n in 0..=2000 {
+            let eye = path.pose(n as f32 / 2000.0).eye;
+            let hit = solids.iter().find(|s| s.distance_squared(eye) < MARGIN * MARGIN);
+            assert!(hit.is_none(), "seed {seed}, scale {scale}, sample {n}: {eye} is at {hit:?}");
+        }
+    }
+}
+
+#[test]
+fn the_flight_begins_and_ends_outside_and_visits_several_storeys() {
+    for scale in [1.0, 0.1] {
+        let (path, building) = (power_plant::path(scale), power_plant::interior(scale));
+        let inside = |t: f32| building.contains_point(path.pose(t).eye);
+        assert!(!inside(0.0) && !inside(1.0));
+        let samples: Vec<f32> = (0..1000).map(|n| n as f32 / 1000.0).collect();
+        let within = samples.iter().filter(|&&t| inside(t)).count();
+        assert!(within > 500, "scale {scale}: only {within} of 1000 samples are inside");
+        let walked: Vec<f32> = samples.iter().filter(|&&t| inside(t)).map(|&t| path.pose(t).eye.y).collect();
+        let storeys = [1.7, 6.7, 16.7].map(|y| walked.iter().filter(|&&w| (w - y).abs() < 0.2).count());
+        assert!(storeys.iter().filter(|&&n| n > 50).count() >= 2, "scale {scale}: {storeys:?}");
+    }
+}
+
+#[test]
+fn a_path_goes_through_its_points_without_jumps() {
+    let points =
+        [Vec3::ZERO, Vec3::new(10.0, 0.0, 0.0), Vec3::new(10.0, 0.5, 0.0), Vec3::new(0.0, 30.0, 5.0)];
+    let path = CameraPath::new(45.0, points.map(|p| (p, p + Vec3::Z)));
+    assert_eq!((path.pose(0.0).eye, path.pose(1.0).eye), (points[0], points[3]));
+    assert_eq!((path.pose(-1.0), path.pose(f32::NAN)), (path.pose(0.0), path.pose(0.0)));
+    assert_eq!(path.pose(0.5).fov_y_degrees, 45.0);
+    let eyes: Vec<Vec3> = (0..=10_000).map(|n| path.pose(n as f32 * 1e-4).eye).collect();
+    for point in points {
+        let nearest = eyes.iter().map(|e| e.distance(point)).fold(f32::MAX, f32::min);
+        assert!(nearest < 0.01, "{point} is passed at {nearest} m");
+    }
+    assert!(eyes.windows(2).all(|w| w[0].distance(w[1]) < 0.02));
+    let still = CameraPath::new(60.0, [(Vec3::ONE, Vec3::ZERO)]);
+    assert_eq!(still.pose(0.7).eye, Vec3::ONE);
+}
+
+#[test]
+fn bounds_hold_every_vertex_of_every_level() {
+    let mut models = vec![worlds::power_plant(1, 0.05), worlds::random(9, 500)];
+    models.extend(Pathology::ALL.map(worlds::pathological));
+    for model in models {
+        let union = model.objects.iter().fold(Aabb::EMPTY, |all, o| all.union(&o.bounds));
+        assert_eq!(model.bounds, union, "{}", model.name);
+        for (n, object) in model.objects.iter().enumerate() {
+            assert!(object.bounds.is_valid() && model.bounds.contains(&object.bounds), "{} {n}", model.name);
+            for p in model.meshes[object.mesh].levels().iter().flat_map(|l| &l.positions) {
+                let p = object.world_from_object.transform_point3(*p);
+                assert!(
+                    object.bounds.contains_point(p),
+                    "{} {n}: {p} outside {:?}",
+                    model.name,
+                    object.bounds
+                );
             }
         }
     }
-    for w in worst.iter().step_by(10).take(60) {
-        println!(
-            "{:?} {} {:?} {:?}",
-            w,
-            plant.meshes[plant.objects[w.2].mesh].name(),
-            path.pose(w.1 as f32 / 2000.0).eye,
-            plant.objects[w.2].bounds
-        );
+}
+
+#[test]
+fn pathologies_are_what_their_names_say() {
+    let world = |kind| worlds::pathological(kind).objects;
+    assert!(world(Pathology::Coincident).windows(2).all(|w| w[0].bounds == w[1].bounds));
+    assert!(world(Pathology::Points).iter().filter(|o| o.bounds.min == o.bounds.max).count() >= 500);
+    assert!(world(Pathology::Huge).iter().any(|o| o.bounds.size().min_element() > 10_000.0));
+    let shells = world(Pathology::Shells);
+    assert!(shells.windows(2).all(|w| w[1].bounds.contains(&w[0].bounds) && w[0].bounds != w[1].bounds));
+    let sizes: Vec<f32> = world(Pathology::Extremes).iter().map(|o| o.bounds.size().max_element()).collect();
+    assert!(sizes.iter().any(|&s| s < 1e-4) && sizes.iter().any(|&s| s > 1e6));
+    assert!(world(Pathology::Grid).iter().all(|o| o.bounds.size() == Vec3::ONE));
+    assert_eq!((world(Pathology::Single).len(), world(Pathology::Empty).len()), (1, 0));
+}
+
+/// Every level of every procedural mesh is closed (each edge is used as often in one direction
+/// as in the other) and faces outward (its volume is positive).
+#[test]
+fn meshes_are_closed_and_face_outward() {
+    let meshes = worlds::power_plant(1, 0.01).meshes.into_iter().chain(worlds::random(1, 1).meshes);
+    for mesh in meshes {
+        for (l, level) in mesh.levels().iter().enumerate() {
+            let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
+            let mut volume = 0.0;
+            for triangle in corners(level) {
+                volume += triangle[0].dot(triangle[1].cross(triangle[2])) / 6.0;
+                for k in 0..3 {
+                    let [a, b] =
+                        [triangle[k], triangle[(k + 1) % 3]].map(|p| (p + 0.0).to_array().map(f32::to_bits));
+                    *edges.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+                }
+            }
+            let open = edges.iter().filter(|(edge, count)| edge[0] != edge[1] && **count != 0).count();
+            assert_eq!(open, 0, "{}, level {l}: {open} open edges", mesh.name());
+            assert!(volume > 0.0, "{}, level {l}: volume {volume}", mesh.name());
+        }
     }
-    for s in [0.01, 0.03, 0.05, 0.1, 0.3, 0.5, 2.0, 10.0] {
-        let p = worlds::power_plant(1, s);
-        println!(
-            "{s}: {} (want {}) {} tris/obj {} {:?}",
-            p.objects.len(),
-            11050.0 * s,
-            p.triangles(),
-            p.triangles() / p.objects.len() as u64,
-            worlds::power_plant::interior(s).size()
+}
+
+/// The stated error of a level bounds the distance of the surfaces, sampled at vertices both ways.
+#[test]
+fn levels_keep_their_promise() {
+    for mesh in worlds::power_plant(1, 0.01).meshes {
+        let levels = mesh.levels();
+        assert_eq!(levels[0].error, 0.0, "{}", mesh.name());
+        for pair in levels.windows(2) {
+            assert!(pair[1].error > pair[0].error, "{}: errors must grow", mesh.name());
+            assert!(pair[1].indices.len() < pair[0].indices.len(), "{}: levels must shrink", mesh.name());
+        }
+        for (l, level) in levels.iter().enumerate().skip(1) {
+            for (from, to) in [(&levels[0], level), (level, &levels[0])] {
+                let step = (from.positions.len() / 40).max(1);
+                for p in from.positions.iter().step_by(step) {
+                    let distance = corners(to).map(|t| point_to_triangle(*p, t)).fold(f32::MAX, f32::min);
+                    let error = level.error;
+                    let bound = error * 1.001 + 1e-5;
+                    assert!(distance <= bound, "{}, level {l}: {distance} > {error} at {p}", mesh.name());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_swarm_stays_in_its_room_and_repeats_itself() {
+    let room = Aabb::new(Vec3::new(-6.0, 0.0, -4.0), Vec3::new(6.0, 3.0, 4.0));
+    let mesh = worlds::random(1, 1).meshes[3].clone();
+    let swarm = Swarm::new(5, 200, mesh.clone(), room);
+    let fly = |steps: usize| {
+        let mut world = hecs::World::new();
+        swarm.spawn(&mut world);
+        (0..steps).for_each(|_| swarm.step(&mut world, Swarm::STEP));
+        world
+    };
+    let mut world = fly(600);
+    let mut before = fly(0);
+    let start: Vec<Motion> = before.query_mut::<&Motion>().into_iter().copied().collect();
+    let mut hash = Fnv::default();
+    for (n, (bounds, drawable, motion)) in
+        world.query_mut::<(&Bounds, &Drawable, &Motion)>().into_iter().enumerate()
+    {
+        assert!(room.contains_point(motion.position), "{n} is at {}", motion.position);
+        assert_ne!(motion.position, start[n].position);
+        assert!(
+            (1.0..4.01).contains(&motion.velocity.length())
+                && motion.velocity.abs() == start[n].velocity.abs()
         );
+        let tall = motion.scale * mesh.bounds().size().y;
+        assert!((0.79..1.51).contains(&tall), "{n} is {tall} m tall");
+        let norm = motion.orientation.iter().map(|c| c * c).sum::<f32>();
+        assert!((norm - 1.0).abs() < 1e-5 && motion.orientation != start[n].orientation);
+        for p in mesh.levels().iter().flat_map(|l| &l.positions) {
+            assert!(bounds.0.contains_point(drawable.world_from_object.transform_point3(*p)));
+        }
+        motion.position.to_array().iter().for_each(|c| hash.word(c.to_bits()));
+        motion.orientation.iter().for_each(|c| hash.word(c.to_bits()));
+    }
+    assert_eq!(hash.0, 0x3D47_EA98_88F2_DCBB, "the same flight on every machine");
+}
+
+#[test]
+fn a_model_spawns_what_it_holds() {
+    let model = worlds::random(4, 50);
+    let mut world = hecs::World::new();
+    model.spawn(&mut world);
+    let spawned: Vec<(Aabb, glam::Affine3A, [u8; 3])> = world
+        .query_mut::<(&Bounds, &Drawable)>()
+        .into_iter()
+        .map(|(b, d)| (b.0, d.world_from_object, d.color))
+        .collect();
+    let held: Vec<_> = model.objects.iter().map(|o| (o.bounds, o.world_from_object, o.color)).collect();
+    assert_eq!(spawned, held);
+}
+
+#[cfg(feature = "gltf")]
+#[test]
+fn the_bunny_comes_with_its_levels() {
+    let bunny = worlds::bunny_mesh().unwrap();
+    assert_eq!((bunny.name(), bunny.triangle_count(), bunny.levels().len()), ("bunny", 69_451, 10));
+    let finest = &bunny.levels()[0];
+    let mut known: Vec<[u32; 3]> = finest.positions.iter().map(|p| p.to_array().map(f32::to_bits)).collect();
+    known.sort_unstable();
+    for pair in bunny.levels().windows(2) {
+        let ratio = pair[0].indices.len() as f32 / pair[1].indices.len() as f32;
+        assert!((1.6..2.5).contains(&ratio) && pair[1].error > pair[0].error);
+        let from_finest = |p: &Vec3| known.binary_search(&p.to_array().map(f32::to_bits)).is_ok();
+        assert!(pair[1].positions.iter().all(from_finest), "every vertex is one of the finest level");
+        assert!(pair[1].error < 0.1 * bunny.bounds().size().y);
+    }
+}
+
+/// The boxes that an object is solid in: the pieces of a wall with an opening, else its bounds.
+fn solids(model: &Model, object: &Placed) -> Vec<Aabb> {
+    let mesh = &model.meshes[object.mesh];
+    if !mesh.name().starts_with("wall with") {
+        return vec![object.bounds];
+    }
+    let place = |p: &Vec3| object.world_from_object.transform_point3(*p);
+    mesh.levels()[0].positions.chunks(8).map(|piece| Aabb::from_points(piece.iter().map(place))).collect()
+}
+
+fn corners(level: &Level) -> impl Iterator<Item = [Vec3; 3]> {
+    level.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|i| level.positions[i as usize]))
+}
+
+/// Ericson, *Real-Time Collision Detection*, §5.1.5, by the edges and the plane.
+fn point_to_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f32 {
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let above = |a: Vec3, b: Vec3| (b - a).cross(p - a).dot(normal) >= 0.0;
+    if normal != Vec3::ZERO && above(a, b) && above(b, c) && above(c, a) {
+        return (p - a).dot(normal).abs();
+    }
+    let edge = |a: Vec3, b: Vec3| {
+        let t = ((p - a).dot(b - a) / (b - a).length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+        p.distance(a + (b - a) * t)
+    };
+    edge(a, b).min(edge(b, c)).min(edge(c, a))
+}
+
+/// Every bit of a model that is drawn.
+fn fingerprint(model: &Model) -> u64 {
+    let mut hash = Fnv::default();
+    for level in model.meshes.iter().flat_map(Mesh::levels) {
+        level.positions.iter().flat_map(Vec3::to_array).for_each(|c| hash.word(c.to_bits()));
+        level.indices.iter().for_each(|&i| hash.word(i));
+        hash.word(level.error.to_bits());
+    }
+    for object in &model.objects {
+        hash.word(object.mesh as u32);
+        object.world_from_object.to_cols_array().iter().for_each(|c| hash.word(c.to_bits()));
+        [object.bounds.min, object.bounds.max]
+            .iter()
+            .flat_map(Vec3::to_array)
+            .for_each(|c| hash.word(c.to_bits()));
+        object.color.iter().for_each(|&c| hash.word(u32::from(c)));
+    }
+    hash.0
+}
+
+/// FNV-1a, whose constants are fixed for good, unlike the standard library's hashers.
+struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0xCBF2_9CE4_8422_2325)
+    }
+}
+
+impl Fnv {
+    fn word(&mut self, word: u32) {
+        for byte in word.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
+        }
     }
 }

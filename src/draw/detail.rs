@@ -83,3 +83,127 @@ fn largest_scale(world_from_object: &Affine3A) -> f64 {
     // `fold` with a comparison that keeps NaN: an object that is nowhere is drawn in full.
     gram.into_iter().fold(0.0, |most: f64, g| if g <= most { most } else { g }).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Quat, Vec3};
+
+    use super::*;
+    use crate::geom::{Viewport, projection};
+    use crate::scene::mesh::Level;
+
+    const ERRORS: [f32; 6] = [0.0, 0.01, 0.02, 0.04, 0.08, 0.16];
+
+    /// A triangle of side 1 whose levels claim growing errors.
+    fn mesh() -> Mesh {
+        let level =
+            |error| Level { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], indices: vec![0, 1, 2], error };
+        Mesh::with_levels("triangle", ERRORS.map(level).to_vec()).unwrap()
+    }
+
+    fn view(eye: Vec3) -> View {
+        View::look_at(eye, eye + Vec3::NEG_Z, 70.0, 0.1, Viewport::new(640, 480)).unwrap()
+    }
+
+    fn orthographic(metres: f32) -> View {
+        let view = glam::camera::rh::view::look_at_mat4(Vec3::Z * 50.0, Vec3::ZERO, Vec3::Y);
+        View::new(view, projection::orthographic(metres, metres, 0.1, 100.0), Viewport::new(500, 500))
+            .unwrap()
+    }
+
+    fn at(translation: Vec3) -> Affine3A {
+        Affine3A::from_translation(translation)
+    }
+
+    fn pixel(view: &View, p: DVec3) -> DVec3 {
+        let clip = *view.clip_from_world() * p.extend(1.0);
+        let ndc = clip.truncate() / clip.w;
+        let size = DVec3::new(f64::from(view.viewport().width), f64::from(view.viewport().height), 0.0);
+        ndc * size * 0.5
+    }
+
+    /// Moves points of the object by the error of the chosen level, in many directions: on the
+    /// screen none moves farther than allowed, and some move nearly as far.
+    #[test]
+    fn the_error_stays_within_the_limit_and_comes_near_it() {
+        let mesh = mesh();
+        let mut nearest_to_limit = 0.0f64;
+        for n in 1..400 {
+            let turn = Quat::from_euler(glam::EulerRot::XYZ, n as f32, n as f32 * 0.7, n as f32 * 0.3);
+            let place = Vec3::new((n % 7) as f32 - 3.0, (n % 5) as f32 - 2.0, -2.0 - n as f32 * 0.3);
+            let size = 0.2 + (n % 9) as f32 * 0.2;
+            let object = Affine3A::from_scale_rotation_translation(Vec3::splat(size), turn, place);
+            for view in [view(Vec3::ZERO), orthographic(10.0)] {
+                let detail = Detail { max_error_px: 1.5 };
+                let metres = f64::from(ERRORS[detail.level(&mesh, &object, &view)] * size);
+                for p in &mesh.levels()[0].positions {
+                    let p = object.transform_point3(*p).as_dvec3();
+                    let ndc = view.clip_from_world().project_point3(p);
+                    if ndc.x.abs() > 1.0 || ndc.y.abs() > 1.0 {
+                        continue;
+                    }
+                    for k in 0..64 {
+                        let angle = f64::from(k) * 0.7;
+                        let direction = DVec3::new(angle.cos(), angle.sin(), (angle * 1.3).sin()).normalize();
+                        // Differential, as the bound is: a thousandth of the way, times a thousand.
+                        let way = pixel(&view, p + direction * metres * 1e-3) - pixel(&view, p);
+                        let way = way.x.abs().max(way.y.abs()) * 1e3;
+                        assert!(way <= 1.5 * 1.001, "{way} px at {p}, error {metres}");
+                        nearest_to_limit = nearest_to_limit.max(way);
+                    }
+                }
+            }
+        }
+        assert!(nearest_to_limit > 1.0, "never more than {nearest_to_limit} px: the bound is too careful");
+    }
+
+    #[test]
+    fn detail_falls_with_distance_and_size() {
+        let (mesh, view) = (mesh(), view(Vec3::ZERO));
+        let level = |z: f32| Detail::default().level(&mesh, &at(Vec3::new(0.0, 0.0, z)), &view);
+        assert_eq!(level(-1.0), 0);
+        assert_eq!(level(-1000.0), ERRORS.len() - 1);
+        assert!((1..200).all(|z| level(-(z as f32)) <= level(-(z as f32) - 1.0)));
+        let double = Affine3A::from_scale(Vec3::splat(2.0));
+        let far = at(Vec3::NEG_Z * 20.0);
+        assert!(
+            Detail::default().level(&mesh, &(far * double), &view)
+                < Detail::default().level(&mesh, &far, &view)
+        );
+    }
+
+    #[test]
+    fn an_orthographic_view_looks_the_same_at_every_depth() {
+        let mesh = mesh();
+        let level = |z: f32, metres| Detail::default().level(&mesh, &at(Vec3::Z * z), &orthographic(metres));
+        assert_eq!(level(40.0, 20.0), level(-40.0, 20.0));
+        assert_eq!((level(0.0, 1.0), level(0.0, 20.0), level(0.0, 1e4)), (0, 3, ERRORS.len() - 1));
+    }
+
+    #[test]
+    fn whatever_cannot_be_judged_is_drawn_in_full() {
+        let (mesh, far) = (mesh(), at(Vec3::NEG_Z * 1000.0));
+        let ask = |detail: Detail, object: &Affine3A, eye: Vec3| detail.level(&mesh, object, &view(eye));
+        let one = Detail::default();
+        assert_ne!(ask(one, &far, Vec3::ZERO), 0, "the object itself can be judged");
+        for px in [0.0, -1.0, f32::NAN] {
+            assert_eq!(ask(Detail { max_error_px: px }, &far, Vec3::ZERO), 0);
+        }
+        assert_eq!(ask(Detail::FULL, &far, Vec3::ZERO), 0);
+        assert_eq!(ask(one, &Affine3A::IDENTITY, Vec3::new(0.3, 0.3, 0.0)), 0, "the eye is in the box");
+        assert_eq!(ask(one, &at(Vec3::Z * 5.0), Vec3::ZERO), 0, "behind the eye");
+        for bad in [f32::NAN, f32::INFINITY] {
+            assert_eq!(ask(one, &at(Vec3::new(0.0, bad, -1000.0)), Vec3::ZERO), 0);
+            assert_eq!(
+                ask(
+                    one,
+                    &(far * Affine3A::from_mat4(Mat4::from_scale(Vec3::new(bad, 1.0, 1.0)))),
+                    Vec3::ZERO
+                ),
+                0
+            );
+        }
+        let infinite = Detail { max_error_px: f32::INFINITY };
+        assert_eq!(ask(infinite, &far, Vec3::ZERO), ERRORS.len() - 1);
+    }
+}

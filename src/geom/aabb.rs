@@ -157,3 +157,92 @@ pub(super) fn f32_above(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) < x { nearest.next_up() } else { nearest }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Quat};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    #[test]
+    fn from_f64_rounds_outward() {
+        // 0.1 and 0.3 are no f32; the origin cancels most of the digits.
+        let origin = DVec3::splat(1e7);
+        let (min, max) = (origin + 0.1, origin + 0.3);
+        let aabb = Aabb::from_f64(min, max, origin);
+        for axis in 0..3 {
+            assert!(f64::from(aabb.min[axis]) <= min[axis] - origin[axis]);
+            assert!(f64::from(aabb.max[axis]) >= max[axis] - origin[axis]);
+        }
+        assert!((aabb.size() - 0.2).abs().max_element() < 1e-6);
+        let exact = Aabb::from_f64(DVec3::splat(-2.0), DVec3::splat(2.0), DVec3::ZERO);
+        assert!(exact.contains(&Aabb::new(Vec3::splat(-2.0), Vec3::splat(2.0))));
+        assert!(!Aabb::from_f64(DVec3::ZERO, DVec3::splat(1e39), DVec3::ZERO).is_valid());
+        assert!(!Aabb::from_f64(DVec3::NAN, DVec3::ONE, DVec3::ZERO).is_valid());
+    }
+
+    #[test]
+    fn a_transformed_box_holds_every_vertex_transformed_in_f32() {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        for _ in 0..20_000 {
+            let mut vector = |scale: f32| {
+                Vec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0f32))) * scale
+            };
+            let scale = 10f32.powi((vector(1.0).x * 7.0) as i32);
+            let aabb = Aabb::from_points([vector(scale), vector(scale)]);
+            let turn = Quat::from_axis_angle(vector(1.0).normalize_or(Vec3::Y), vector(3.0).x);
+            let size = vector(4.0);
+            let target_from_source =
+                Affine3A::from_scale_rotation_translation(size, turn, vector(10.0 * scale));
+            let around = aabb.transformed(&target_from_source);
+            let inner = (aabb.center() + vector(0.5) * aabb.size()).clamp(aabb.min, aabb.max);
+            for p in aabb.corners().into_iter().chain([inner]) {
+                assert!(around.contains_point(target_from_source.transform_point3(p)));
+                let unfused = Mat4::from(target_from_source) * p.extend(1.0);
+                assert!(around.contains_point(unfused.truncate()));
+                let m = target_from_source.matrix3;
+                let fused = Vec3::from_array(std::array::from_fn(|i| {
+                    let row = m.row(i);
+                    row.x.mul_add(
+                        p.x,
+                        row.y.mul_add(p.y, row.z.mul_add(p.z, target_from_source.translation[i])),
+                    )
+                }));
+                assert!(around.contains_point(fused), "{aabb:?} under {target_from_source:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_transformed_box_is_no_larger_than_it_must_be() {
+        let aabb = Aabb::new(Vec3::new(1.0, 2.0, 3.0), Vec3::new(2.0, 4.0, 6.0));
+        let moved = aabb.transformed(&Affine3A::from_translation(Vec3::new(10.0, 0.0, -1.0)));
+        let exact = Aabb::new(Vec3::new(11.0, 2.0, 2.0), Vec3::new(12.0, 4.0, 5.0));
+        assert!(moved.contains(&exact) && exact.inflated(2e-5).contains(&moved), "{moved:?}");
+    }
+
+    #[test]
+    fn degenerate_and_invalid_boxes_are_told_apart() {
+        let point = Aabb::new(Vec3::ONE, Vec3::ONE);
+        assert!(point.is_valid() && !point.is_empty() && point.contains_point(Vec3::ONE));
+        assert!(Aabb::EMPTY.is_empty() && !Aabb::EMPTY.is_valid());
+        assert_eq!(Aabb::EMPTY.union(&point), point);
+        assert!(!Aabb::new(Vec3::NAN, Vec3::ONE).is_valid());
+        assert!(!Aabb::new(Vec3::ZERO, Vec3::INFINITY).is_valid());
+        let inverted = Aabb::new(Vec3::X, Vec3::ZERO);
+        assert!(inverted.is_empty() && !inverted.is_valid());
+        let huge = Aabb::new(Vec3::splat(f32::MIN), Vec3::splat(f32::MAX));
+        assert!(huge.is_valid() && huge.center() == Vec3::ZERO);
+    }
+
+    #[test]
+    fn inflating_rounds_outward_and_touching_boxes_meet() {
+        let a = Aabb::new(Vec3::ZERO, Vec3::ONE);
+        assert!(a.inflated(1e-9).contains(&a) && a.inflated(1e-9) != a);
+        let b = Aabb::new(Vec3::X, Vec3::splat(2.0));
+        assert!(a.intersects(&b) && b.intersects(&a));
+        assert!(!a.intersects(&Aabb::new(Vec3::splat(1.1), Vec3::splat(2.0))));
+    }
+}

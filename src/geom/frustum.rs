@@ -93,8 +93,9 @@ impl Frustum {
             if plane.greatest(aabb) < 0.0 && aabb.is_valid() {
                 return None;
             }
-            // Not `least < 0`: NaN stays in the mask.
-            if !(plane.least(aabb) >= 0.0) {
+            // Not `least < 0`: a box that is not a number stays in the mask.
+            let inside = plane.least(aabb) >= 0.0;
+            if !inside {
                 crossed.0 |= 1 << i;
             }
         }
@@ -206,4 +207,106 @@ fn greater(a: f32, b: f32) -> f32 {
 fn power_of_two_below(x: f64) -> f64 {
     let exponent = x.to_bits() & f64::INFINITY.to_bits();
     if x.is_normal() { f64::from_bits(exponent) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Vec3};
+
+    use super::*;
+    use crate::geom::{Viewport, projection};
+
+    fn view() -> View {
+        View::look_at(Vec3::ZERO, Vec3::NEG_Z, 90.0, 0.1, Viewport::new(100, 100)).unwrap()
+    }
+
+    fn cube(x: f32, y: f32, z: f32) -> Aabb {
+        Aabb::from_center(Vec3::new(x, y, z), Vec3::splat(0.5))
+    }
+
+    #[test]
+    fn each_side_is_outside_where_it_should_be() {
+        let frustum = Frustum::new(&view());
+        let inside =
+            [cube(0.0, 0.0, -10.0), cube(9.9, -9.9, -10.0), cube(0.0, 0.0, -0.5), cube(0.0, 0.0, 0.3)];
+        let outside = [
+            cube(11.6, 0.0, -10.0),
+            cube(-11.6, 0.0, -10.0),
+            cube(0.0, 11.6, -10.0),
+            cube(0.0, -11.6, -10.0),
+            cube(0.0, 0.0, 0.5),
+            cube(0.0, 0.0, 10.0),
+        ];
+        assert!(inside.iter().all(|b| frustum.intersects(b)));
+        assert!(outside.iter().all(|b| !frustum.intersects(b)));
+    }
+
+    #[test]
+    fn an_infinite_far_plane_never_culls_and_a_finite_one_does() {
+        let far_away = cube(0.0, 0.0, -1e30);
+        let frustum = Frustum::new(&view());
+        assert!(frustum.intersects(&far_away));
+        let largest = Aabb::new(Vec3::splat(f32::MIN), Vec3::splat(f32::MAX));
+        assert_eq!(frustum.classify(&largest, PlaneMask::ALL).map(PlaneMask::is_empty), Some(false));
+        for clip_from_view in [
+            projection::perspective_finite(1.0, 1.0, 0.1, 100.0),
+            projection::perspective_standard(1.0, 1.0, 0.1, 100.0),
+        ] {
+            let view = View::new(Mat4::IDENTITY, clip_from_view, Viewport::new(100, 100)).unwrap();
+            let frustum = Frustum::new(&view);
+            assert!(frustum.intersects(&cube(0.0, 0.0, -100.4)));
+            assert!(!frustum.intersects(&cube(0.0, 0.0, -101.0)));
+            assert!(!frustum.intersects(&far_away));
+        }
+    }
+
+    #[test]
+    fn touching_boxes_are_not_outside() {
+        // The left plane is x = z: these boxes touch it with an edge and with a corner's width.
+        let frustum = Frustum::new(&view());
+        assert!(frustum.intersects(&Aabb::new(Vec3::new(-20.0, -1.0, -10.0), Vec3::new(-10.0, 1.0, -9.0))));
+        let point = Vec3::new(-10.0, 10.0, -10.0);
+        assert!(frustum.intersects(&Aabb::new(point, point)));
+        // The near plane.
+        assert!(frustum.intersects(&Aabb::new(Vec3::new(-1.0, -1.0, -0.1), Vec3::ONE)));
+    }
+
+    #[test]
+    fn masks_shrink_down_a_tree() {
+        let frustum = Frustum::new(&view());
+        assert_eq!(frustum.classify(&cube(0.0, 0.0, -10.0), PlaneMask::ALL), Some(PlaneMask::NONE));
+        let crossing = frustum.classify(&cube(10.0, 0.0, -10.0), PlaneMask::ALL).unwrap();
+        assert_eq!(crossing.indices().collect::<Vec<_>>(), [1]);
+        // Only the planes of the mask are tested.
+        let beyond = cube(20.0, 0.0, -10.0);
+        assert_eq!(frustum.classify(&beyond, crossing), None);
+        assert_eq!(frustum.classify(&beyond, PlaneMask::NONE), Some(PlaneMask::NONE));
+    }
+
+    #[test]
+    fn invalid_boxes_are_never_outside() {
+        let frustum = Frustum::new(&view());
+        let behind = cube(0.0, 0.0, 10.0);
+        for axis in 0..3 {
+            for (low, high) in [(f32::NAN, 1.0), (0.0, f32::NAN), (f32::NAN, f32::NAN), (1.0, -1.0)] {
+                let mut bad = behind;
+                (bad.min[axis], bad.max[axis]) = (low, high);
+                assert!(frustum.intersects(&bad), "{bad:?}");
+                assert!(frustum.classify(&bad, PlaneMask::ALL).is_some(), "{bad:?}");
+                let (min, max) = (bad.min, bad.max);
+                let (min, max) = ([&[min.x], &[min.y], &[min.z]], [&[max.x], &[max.y], &[max.z]]);
+                assert_eq!(frustum.outside_lanes(min, max, PlaneMask::ALL), 0, "{bad:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn lanes_answer_in_their_own_bits() {
+        let frustum = Frustum::new(&view());
+        let boxes: [Aabb; 4] = std::array::from_fn(|i| cube(i as f32 * 10.0, 0.0, -15.0));
+        let [x, y, z] = [0, 1, 2].map(|axis| boxes.map(|b| b.min[axis]));
+        let [u, v, w] = [0, 1, 2].map(|axis| boxes.map(|b| b.max[axis]));
+        assert_eq!(frustum.outside_lanes([&x, &y, &z], [&u, &v, &w], PlaneMask::ALL), 0b1100);
+        assert_eq!(frustum.outside_lanes([&x, &y, &z], [&u, &v, &w], PlaneMask::NONE), 0);
+    }
 }

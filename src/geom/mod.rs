@@ -7,6 +7,7 @@ mod aabb;
 mod frustum;
 mod project;
 mod proxy;
+mod silhouette;
 mod view;
 
 pub use aabb::Aabb;

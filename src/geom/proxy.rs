@@ -30,8 +30,11 @@
 //! snapping distance of the viewport matter, where |X′| ≤ 1 + that distance: the bound does not
 //! grow with the parts of the box that lie far beside the screen. In the same way
 //! N′ − N = (e_z − N′e_w)/w, and with δ_w ≤ w/4 that is at most 4/3·(δ_z + max|N|·δ_w)/w. Both are
-//! taken at the least w of the corners. The f64 corners used here differ from exact ones by less
-//! than 2⁻²⁸ δ; δ is twice the view's bound, which covers this as well.
+//! taken at the least w of the corners.
+//!
+//! *The f64 arithmetic here* errs by 2⁻²⁹ of what the same operations do in f32, and each of the
+//! three bounds has room for it: δ is twice the view's bound, the rounding of the viewport
+//! transform is taken twice, and ε has one unit more than the app's interpolation.
 //!
 //! *Snapping.* A sample at S in the snapped triangle has weights λ; the point with the same
 //! weights in the triangle before snapping, S′, lies within 1/16 pixel (and the rounding of the
@@ -40,7 +43,8 @@
 //!
 //! *Together:* S lies within r = (r_x, r_y) of the exact projection (X, Y, N) of a point of the
 //! box, and the stored nearness is at most N + ε. Hence aS_x + bS_y + c ≥ −(|a|r_x + |b|r_y): the
-//! outline, pushed outward by that much, covers S. And the stored nearness is at most
+//! outline, pushed outward by that much, covers S, as the corners' bounding rectangle does, which
+//! is four such half spaces. And the stored nearness is at most
 //! N + ε ≤ gX + hY + c + ε ≤ gS_x + hS_y + |g|r_x + |h|r_y + c + ε, as well as at most the greatest
 //! N of a corner + ε: the entry nearness, the least of these, is not farther.
 //!
@@ -54,10 +58,7 @@
 //! *Depth beyond the far plane.* A stored nearness is never less than the cleared one. A plane
 //! that falls below it inside the rectangle is left out if the box reaches the far plane.
 //!
-//! *Six edges.* Seen from a point outside, at most one of two opposite faces is turned to the
-//! viewer, so one, two or three faces are, and the edges between a turned and an unturned face
-//! number 4, 6 and 6 (Schmalstieg and Tobler, *Fast Projected Area Computation for
-//! Three-Dimensional Bounding Boxes*, 1999); `tables_have_at_most_six_edges` counts them.
+//! *Six edges.* See `silhouette.rs`.
 //!
 //! # Deviations
 //!
@@ -67,8 +68,11 @@
 //! an inexact inverse cannot make them wrong. A box that lies between pixel centres, r included,
 //! is [`Question::Outside`] although it may lie on the screen.
 
+use glam::{DVec2, DVec4};
+
 use super::aabb::f32_above;
-use super::project::{Placement, Screen, UNIT, greatest, least, place};
+use super::project::{Screen, UNIT, Unprojected, greatest, least, place};
+use super::silhouette::SILHOUETTES;
 use crate::geom::{Aabb, DepthDirection, View};
 
 /// A rectangle of whole pixels of the viewport, half open.
@@ -151,7 +155,7 @@ impl Proxy {
     fn offset(&self, x: u32, y: u32) -> (f32, f32) {
         debug_assert!(self.rect.contains(x, y), "pixel ({x}, {y}) is not in {:?}", self.rect);
         let [x0, y0] = self.origin();
-        ((x.wrapping_sub(x0)) as f32 + 0.5, (y.wrapping_sub(y0)) as f32 + 0.5)
+        ((x - x0) as f32 + 0.5, (y - y0) as f32 + 0.5)
     }
 }
 
@@ -169,22 +173,22 @@ pub enum Question {
 
 impl Question {
     /// What to ask about a box: its proxy, if it has one. An invalid box is
-    /// [`Question::Visible`]. No allocation; some hundred nanoseconds.
+    /// [`Question::Visible`]. O(1), no allocation.
     pub fn new(aabb: &Aabb, view: &View) -> Self {
         let screen = match place(aabb, view) {
-            Placement::Outside => return Self::Outside,
-            Placement::Near => return Self::Visible,
-            Placement::Ahead(screen) => screen,
+            Ok(screen) => screen,
+            Err(Unprojected::Outside) => return Self::Outside,
+            Err(Unprojected::Near) => return Self::Visible,
         };
         let Some(rect) = screen.pixels(view) else { return Self::Outside };
         if screen.reach.max_element() > MAX_REACH {
             return Self::Visible;
         }
-        let faces = Faces::turned_to(view, aabb);
+        let (local, faces) = (Local::new(&screen, rect), Faces::turned_to(view, aabb));
         Self::Ask(Proxy {
             rect,
-            edges: edges(&screen, rect, &faces),
-            planes: planes(&screen, rect, &faces, view),
+            edges: local.edges(&faces),
+            planes: local.planes(&faces, view),
             nearest: f32_above(screen.nearest + screen.depth_error).max(view.depth().cleared()),
         })
     }
@@ -193,8 +197,9 @@ impl Question {
 /// With a greater r, in pixels, the outline says so little that asking is not worth it.
 const MAX_REACH: f64 = 32.0;
 
-/// The relative error of the f64 arithmetic that an edge or plane passes through.
-const UNIT_F64: f64 = 4.0 * f64::EPSILON;
+/// Steeper planes, in nearness a pixel, are faces seen edge on: not worth the f32 error that
+/// they would bring.
+const MAX_SLOPE: f64 = 1e6;
 
 #[inline]
 fn affine([a, b, c]: [f32; 3], dx: f32, dy: f32) -> f32 {
@@ -223,7 +228,7 @@ impl Faces {
             let (low, high) = (f64::from(aabb.min[axis]), f64::from(aabb.max[axis]));
             // The inward plane of the lesser face, p − low ≥ 0, is (1, −low) in world space and
             // so `form(column, low)` in clip space; that of the greater one is its negation.
-            let form = |column: glam::DVec4, at: f64| column[axis] - at * column.w;
+            let form = |column: DVec4, at: f64| column[axis] - at * column.w;
             let at = if sign * form(world.z_axis, low) < 0.0 {
                 faces.turned[axis] = 1;
                 low
@@ -245,87 +250,107 @@ impl Faces {
     }
 }
 
-fn edges(screen: &Screen, rect: PixelRect, faces: &Faces) -> [[f32; 3]; 6] {
-    let mut edges = [[0.0; 3]; 6];
-    let mut used = 0;
-    let (x, y) = relative(screen, rect);
-    let silhouette = &SILHOUETTES[faces.index()];
-    for &[i, j] in &silhouette.edges[..silhouette.len] {
+/// The projected corners relative to the rectangle's, from which the coefficients are made.
+struct Local<'a> {
+    screen: &'a Screen,
+    x: [f64; 8],
+    y: [f64; 8],
+    /// Columns and rows of the rectangle.
+    size: DVec2,
+}
+
+impl<'a> Local<'a> {
+    fn new(screen: &'a Screen, rect: PixelRect) -> Self {
+        let origin = DVec2::new(f64::from(rect.x0), f64::from(rect.y0));
+        Self {
+            screen,
+            x: screen.x.map(|x| x - origin.x),
+            y: screen.y.map(|y| y - origin.y),
+            size: DVec2::new(f64::from(rect.width()), f64::from(rect.height())),
+        }
+    }
+
+    /// The silhouette has two edges along an axis or none. Walked along the axis, one has the box
+    /// on its left and the other on its right; which one is which is decided for both together,
+    /// so that a box without width still gets both of its sides.
+    fn edges(&self, faces: &Faces) -> [[f32; 3]; 6] {
+        let mut edges = [[0.0; 3]; 6];
+        let mut used = 0;
+        let silhouette = &SILHOUETTES[faces.index()];
+        for pair in silhouette.pairs[..silhouette.len].iter() {
+            let [first, second] = pair.map(|ends| self.support(ends));
+            let lies_low = first.above - first.below >= second.above - second.below;
+            for (support, low) in [(first, lies_low), (second, !lies_low)] {
+                let edge = self.pushed(if low { support.from_low } else { support.from_high });
+                if self.least(edge) < 0.0 {
+                    edges[used] = self.rounded_up(edge);
+                    used += 1;
+                }
+            }
+        }
+        edges
+    }
+
+    /// The two half planes that hold all corners and have a border parallel to an edge. For
+    /// corners that coincide on the screen they hold every point.
+    fn support(&self, [i, j]: [usize; 2]) -> Support {
+        let (x, y) = (&self.x, &self.y);
         let (a, b) = (y[i] - y[j], x[j] - x[i]);
         let scale = 1.0 / (a.abs() + b.abs());
-        if !scale.is_finite() {
-            continue; // corners that coincide on the screen
-        }
-        let (a, b) = (a * scale, b * scale);
+        let (a, b) = if scale.is_finite() { (a * scale, b * scale) } else { (0.0, 0.0) };
         let along: [f64; 8] = std::array::from_fn(|k| a * x[k] + b * y[k]);
         let (low, high) = (least(&along), greatest(&along));
-        // The edge is where the form is least or greatest; the box is on the other side.
-        let inward = if along[i] - low <= high - along[i] { [a, b, -low] } else { [-a, -b, high] };
-        let edge = pushed(inward, screen, rect, low.abs().max(high.abs()));
-        if least_over(rect, edge) < 0.0 {
-            edges[used] = rounded_up(edge, rect);
-            used += 1;
+        Support {
+            from_low: [a, b, -low],
+            from_high: [-a, -b, high],
+            above: high - along[i],
+            below: along[i] - low,
         }
     }
-    edges
-}
 
-fn planes(screen: &Screen, rect: PixelRect, faces: &Faces, view: &View) -> [[f32; 3]; 3] {
-    let mut planes = [[0.0, 0.0, f32::MAX]; 3];
-    let mut used = 0;
-    let (x, y) = relative(screen, rect);
-    let viewport = view.viewport();
-    let per_pixel = [2.0 / f64::from(viewport.width), -2.0 / f64::from(viewport.height)];
-    let cleared = f64::from(view.depth().cleared());
-    let reaches_far = screen.farthest - screen.depth_error <= cleared;
-    for axis in (0..3).filter(|&axis| faces.turned[axis] != 0) {
-        let [a, b] = [faces.slopes[axis][0] * per_pixel[0], faces.slopes[axis][1] * per_pixel[1]];
-        // A plane steeper than this a pixel is a face seen edge on; and f32 must hold it.
-        if !(a.abs() < MAX_SLOPE && b.abs() < MAX_SLOPE) {
-            continue;
+    fn planes(&self, faces: &Faces, view: &View) -> [[f32; 3]; 3] {
+        let mut planes = [[0.0, 0.0, f32::MAX]; 3];
+        let mut used = 0;
+        let (x, y, screen) = (&self.x, &self.y, self.screen);
+        let viewport = view.viewport();
+        let per_pixel = [2.0 / f64::from(viewport.width), -2.0 / f64::from(viewport.height)];
+        let cleared = f64::from(view.depth().cleared());
+        let reaches_far = screen.farthest - screen.depth_error <= cleared;
+        for axis in (0..3).filter(|&axis| faces.turned[axis] != 0) {
+            let [a, b] = [faces.slopes[axis][0] * per_pixel[0], faces.slopes[axis][1] * per_pixel[1]];
+            if !(a.abs() < MAX_SLOPE && b.abs() < MAX_SLOPE) {
+                continue;
+            }
+            let rise: [f64; 8] = std::array::from_fn(|k| screen.nearness[k] - (a * x[k] + b * y[k]));
+            let [a, b, c] = self.pushed([a, b, greatest(&rise)]);
+            let plane = [a, b, c + screen.depth_error];
+            let lowest = self.least(plane);
+            if lowest < screen.nearest && !(reaches_far && lowest < cleared) {
+                planes[used] = self.rounded_up(plane);
+                used += 1;
+            }
         }
-        let rise: [f64; 8] = std::array::from_fn(|k| screen.nearness[k] - (a * x[k] + b * y[k]));
-        let c = greatest(&rise);
-        let magnitude = least(&rise).abs().max(c.abs()) + screen.nearest.abs().max(screen.farthest.abs());
-        let [a, b, c] = pushed([a, b, c], screen, rect, magnitude);
-        let plane = [a, b, c + screen.depth_error];
-        let lowest = least_over(rect, plane);
-        if lowest < screen.nearest && !(reaches_far && lowest < cleared) {
-            planes[used] = rounded_up(plane, rect);
-            used += 1;
-        }
+        planes
     }
-    planes
-}
 
-/// Steeper planes are not worth the f32 error that they bring: nearness has a range of 1.
-const MAX_SLOPE: f64 = 1e6;
+    /// A form raised by the most that it changes over r.
+    fn pushed(&self, [a, b, c]: [f64; 3]) -> [f64; 3] {
+        [a, b, c + a.abs() * self.screen.reach.x + b.abs() * self.screen.reach.y]
+    }
 
-/// The corners relative to the rectangle's.
-fn relative(screen: &Screen, rect: PixelRect) -> ([f64; 8], [f64; 8]) {
-    let (x0, y0) = (f64::from(rect.x0), f64::from(rect.y0));
-    (screen.x.map(|x| x - x0), screen.y.map(|y| y - y0))
-}
+    /// The least value of a form at the pixel centres of the rectangle.
+    fn least(&self, [a, b, c]: [f64; 3]) -> f64 {
+        let least = |k: f64, pixels: f64| (k * 0.5).min(k * (pixels - 0.5));
+        c + least(a, self.size.x) + least(b, self.size.y)
+    }
 
-/// A form raised by what it changes over r, and by the f64 error of terms of some magnitude.
-fn pushed([a, b, c]: [f64; 3], screen: &Screen, rect: PixelRect, magnitude: f64) -> [f64; 3] {
-    let reach = a.abs() * screen.reach.x + b.abs() * screen.reach.y;
-    let corners = a.abs() * (f64::from(rect.x0) + screen.max.x.abs().max(screen.min.x.abs()))
-        + b.abs() * (f64::from(rect.y0) + screen.max.y.abs().max(screen.min.y.abs()));
-    [a, b, c + reach + UNIT_F64 * (magnitude + corners)]
-}
-
-/// The least value of a form at the pixel centres of a rectangle.
-fn least_over(rect: PixelRect, [a, b, c]: [f64; 3]) -> f64 {
-    let least = |k: f64, pixels: u32| (k * 0.5).min(k * (f64::from(pixels) - 0.5));
-    c + least(a, rect.width()) + least(b, rect.height())
-}
-
-/// In f32, with `c` raised so that evaluation in f32 is an upper bound all over the rectangle.
-fn rounded_up([a, b, c]: [f64; 3], rect: PixelRect) -> [f32; 3] {
-    let magnitude = a.abs() * f64::from(rect.width()) + b.abs() * f64::from(rect.height()) + c.abs();
-    let error = 6.0 * UNIT * magnitude + 4.0 * f64::from(f32::MIN_POSITIVE);
-    [a as f32, b as f32, f32_above(c + error)]
+    /// In f32, with `c` raised so that evaluation in f32 is an upper bound all over the
+    /// rectangle.
+    fn rounded_up(&self, [a, b, c]: [f64; 3]) -> [f32; 3] {
+        let magnitude = DVec2::new(a.abs(), b.abs()).dot(self.size) + c.abs();
+        let error = 6.0 * UNIT * magnitude + 4.0 * f64::from(f32::MIN_POSITIVE);
+        [a as f32, b as f32, f32_above(c + error)]
+    }
 }
 
 fn sign(depth: DepthDirection) -> f64 {
@@ -335,38 +360,125 @@ fn sign(depth: DepthDirection) -> f64 {
     }
 }
 
-/// The outline's edges as pairs of corners (indices as in [`Aabb::corners`]).
+/// Half planes on either side of the box, and how far the box reaches beyond an edge on either
+/// side, in pixels.
 #[derive(Clone, Copy)]
-struct Silhouette {
-    edges: [[usize; 2]; 6],
-    len: usize,
+struct Support {
+    from_low: [f64; 3],
+    from_high: [f64; 3],
+    above: f64,
+    below: f64,
 }
 
-/// For each combination of [`Faces::turned`].
-const SILHOUETTES: [Silhouette; 27] = {
-    let mut table = [Silhouette { edges: [[0; 2]; 6], len: 0 }; 27];
-    let mut index = 0;
-    while index < 27 {
-        table[index] = silhouette([index % 3, index / 3 % 3, index / 9]);
-        index += 1;
-    }
-    table
-};
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Vec3};
 
-/// The edges between a face that is turned to the viewer and one that is not.
-const fn silhouette(turned: [usize; 3]) -> Silhouette {
-    let mut found = Silhouette { edges: [[0; 2]; 6], len: 0 };
-    let mut edge = 0;
-    while edge < 12 {
-        // The edge runs along `axis`, between the faces `p_side` of axis p and `q_side` of q.
-        let (axis, p_side, q_side) = (edge / 4, edge & 1, edge >> 1 & 1);
-        let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
-        if (turned[p] == p_side + 1) != (turned[q] == q_side + 1) {
-            let corner = p_side << p | q_side << q;
-            found.edges[found.len] = [corner, corner | 1 << axis];
-            found.len += 1;
-        }
-        edge += 1;
+    use super::*;
+    use crate::geom::{DepthFormat, Viewport, projection};
+
+    /// One pixel a metre, the near plane at z = 0 and the far one at z = −100.
+    fn flat_view() -> View {
+        let clip_from_view = projection::orthographic(64.0, 64.0, 0.0, 100.0);
+        View::new(Mat4::IDENTITY, clip_from_view, Viewport::new(64, 64)).unwrap()
     }
-    found
+
+    fn proxy(aabb: &Aabb, view: &View) -> Proxy {
+        match Question::new(aabb, view) {
+            Question::Ask(proxy) => proxy,
+            other => panic!("{aabb:?} is {other:?}"),
+        }
+    }
+
+    fn covered(proxy: &Proxy) -> Vec<(u32, u32)> {
+        let rect = proxy.rect;
+        let pixels = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
+        pixels.filter(|&(x, y)| proxy.covers(x, y)).collect()
+    }
+
+    #[test]
+    fn an_axis_aligned_box_covers_its_own_pixels() {
+        let aabb = Aabb::new(Vec3::new(-22.0, 2.0, -30.0), Vec3::new(-12.0, 7.0, -20.0));
+        let proxy = proxy(&aabb, &flat_view());
+        assert_eq!(proxy.rect, PixelRect { x0: 10, y0: 25, x1: 20, y1: 30 });
+        assert_eq!(proxy.origin(), [10, 25]);
+        assert_eq!(covered(&proxy).len(), 50);
+        // Reversed z: the front face at z = −20 has depth 0.8.
+        let entry = proxy.nearness(15, 27);
+        assert!((0.8..0.800_01).contains(&entry), "{entry}");
+    }
+
+    #[test]
+    fn degenerate_boxes_keep_an_outline() {
+        let view = flat_view();
+        let center = Vec3::new(0.5, 0.5, -50.0);
+        for (half, pixels) in [
+            (Vec3::ZERO, 1),
+            (Vec3::new(3.0, 0.0, 0.0), 7),
+            (Vec3::new(0.0, 0.0, 3.0), 1),
+            (Vec3::new(3.0, 2.0, 0.0), 35),
+            (Vec3::new(0.0, 2.0, 3.0), 5),
+        ] {
+            let proxy = proxy(&Aabb::from_center(center, half), &view);
+            assert_eq!(covered(&proxy).len(), pixels, "{half}: {proxy:?}");
+        }
+        let diagonal =
+            View::look_at(Vec3::splat(10.0), Vec3::ZERO, 60.0, 0.1, Viewport::new(201, 201)).unwrap();
+        for half in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::ZERO] {
+            let proxy = proxy(&Aabb::from_center(Vec3::ZERO, half), &diagonal);
+            assert!(covered(&proxy).len() <= 40, "a line is no area: {proxy:?}");
+        }
+    }
+
+    #[test]
+    fn a_box_between_pixel_centres_owns_nothing() {
+        let between = Vec3::new(0.0, 0.0, -50.0);
+        assert_eq!(Question::new(&Aabb::new(between, between), &flat_view()), Question::Outside);
+        // Any sample position may be hit when there are several.
+        let view = flat_view().with_target(DepthDirection::Reversed, DepthFormat::Depth32Float, 4);
+        assert_eq!(covered(&proxy(&Aabb::new(between, between), &view)).len(), 4);
+    }
+
+    #[test]
+    fn what_cannot_be_asked_is_visible() {
+        let eye = Vec3::new(3.0, 4.0, 5.0);
+        let view = View::look_at(eye, Vec3::ZERO, 60.0, 0.1, Viewport::new(100, 100)).unwrap();
+        for half in [0.2, 1.0, 1e7] {
+            assert_eq!(Question::new(&Aabb::from_center(eye, Vec3::splat(half)), &view), Question::Visible);
+        }
+        // Wholly before the near plane: clipped away.
+        assert_eq!(Question::new(&Aabb::from_center(eye, Vec3::splat(0.05)), &view), Question::Outside);
+        let nan = Aabb::new(Vec3::splat(f32::NAN), Vec3::ZERO);
+        assert_eq!(Question::new(&nan, &view), Question::Visible);
+        assert_eq!(Question::new(&Aabb::EMPTY, &view), Question::Visible);
+        // Nearer to a far-off eye than f32 can tell.
+        let view = View::look_at(Vec3::splat(1e7), Vec3::ZERO, 60.0, 0.1, Viewport::new(100, 100)).unwrap();
+        let aabb = Aabb::from_center(Vec3::splat(1e7 - 4.0), Vec3::splat(1.0));
+        assert_eq!(Question::new(&aabb, &view), Question::Visible);
+        assert!(matches!(
+            Question::new(&Aabb::from_center(Vec3::ZERO, Vec3::splat(1e6)), &view),
+            Question::Ask(_)
+        ));
+    }
+
+    #[test]
+    fn beyond_the_far_plane_the_entry_is_no_farther_than_the_cleared_depth() {
+        let view = flat_view();
+        let aabb = Aabb::new(Vec3::new(-5.0, -5.0, -150.0), Vec3::new(5.0, 5.0, -99.999_99));
+        let proxy = proxy(&aabb, &view);
+        assert!(covered(&proxy).iter().all(|&(x, y)| proxy.nearness(x, y) >= 0.0), "{proxy:?}");
+        let beyond = Aabb::new(Vec3::new(-5.0, -5.0, -150.0), Vec3::new(5.0, 5.0, -101.0));
+        assert_eq!(Question::new(&beyond, &view), Question::Outside);
+    }
+
+    #[test]
+    fn coarser_targets_take_more() {
+        let aabb = Aabb::new(Vec3::splat(-0.7), Vec3::splat(0.9));
+        let view = View::look_at(Vec3::splat(4.0), Vec3::ZERO, 60.0, 0.1, Viewport::new(100, 100)).unwrap();
+        let fine = proxy(&aabb, &view);
+        let unorm = view.clone().with_target(DepthDirection::Reversed, DepthFormat::Depth24Plus, 1);
+        assert!(proxy(&aabb, &unorm).nearest > fine.nearest);
+        let multisampled = view.with_target(DepthDirection::Reversed, DepthFormat::Depth32Float, 4);
+        assert!(covered(&proxy(&aabb, &multisampled)).len() > covered(&fine).len());
+    }
 }

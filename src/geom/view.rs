@@ -321,3 +321,127 @@ fn invert(name: &'static str, m: DMat4) -> Result<DMat4, Error> {
     }
     Ok(inverse)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{Quat, Vec2};
+
+    use super::*;
+
+    fn perspective() -> Mat4 {
+        projection::perspective(1.0, 1.0, 0.1)
+    }
+
+    #[test]
+    fn the_extremes_are_accepted() {
+        let viewport = Viewport::new(Viewport::MAX_SIDE, 1);
+        for eye in [Vec3::ZERO, Vec3::splat(1e7), Vec3::new(-1e7, 1e-3, 1e7)] {
+            for turn in [Quat::IDENTITY, Quat::from_rotation_y(1.0), Quat::from_xyzw(0.5, 0.5, 0.5, 0.5)] {
+                let view_from_world = Mat4::from_rotation_translation(turn, -(turn * eye));
+                for fov in [0.1f32, 60.0, 179.0].map(f32::to_radians) {
+                    for near in [1e-3, 0.1, 100.0] {
+                        let far = near * 1e9;
+                        for clip_from_view in [
+                            projection::perspective(fov, 2.0, near),
+                            projection::perspective_finite(fov, 2.0, near, far),
+                            projection::perspective_standard(fov, 2.0, near, far),
+                            projection::orthographic(1e-2, 1e-2, near, far),
+                            projection::orthographic(1e7, 1e7, near, far),
+                            projection::jittered(
+                                projection::perspective(fov, 2.0, near),
+                                Vec2::new(0.4, -0.3),
+                                16_384,
+                                1,
+                            ),
+                        ] {
+                            let view = View::new(view_from_world, clip_from_view, viewport);
+                            let view =
+                                view.unwrap_or_else(|e| panic!("{e}: {view_from_world}, {clip_from_view}"));
+                            let product = *view.clip_from_world() * *view.world_from_clip();
+                            assert!(product.is_finite());
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn singular_matrices_are_refused() {
+        let viewport = Viewport::new(10, 10);
+        let flattened = Mat4::from_scale(Vec3::new(1.0, 0.0, 1.0));
+        let repeated = Mat4::from_cols(Vec4::X, Vec4::X, Vec4::Z, Vec4::W);
+        let dependent = Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(3.0, 4.0, 0.0, 0.0), Vec4::W);
+        for singular in [Mat4::ZERO, flattened, repeated, dependent] {
+            let error = View::new(singular, perspective(), viewport).unwrap_err();
+            assert!(matches!(error, Error::Matrix { name: "view_from_world", .. }), "{error}");
+            let error = View::new(Mat4::IDENTITY, singular, viewport).unwrap_err();
+            assert!(matches!(error, Error::Matrix { name: "clip_from_view", .. }), "{error}");
+        }
+        assert!(View::look_at(Vec3::ONE, Vec3::ONE, 60.0, 0.1, viewport).is_err());
+    }
+
+    #[test]
+    fn entries_that_are_not_finite_are_refused() {
+        let viewport = Viewport::new(10, 10);
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for i in 0..16 {
+                let mut entries = Mat4::IDENTITY.to_cols_array();
+                entries[i] = bad;
+                let m = Mat4::from_cols_array(&entries);
+                assert!(matches!(View::new(m, perspective(), viewport), Err(Error::Matrix { .. })));
+                assert!(matches!(View::new(Mat4::IDENTITY, m, viewport), Err(Error::Matrix { .. })));
+            }
+        }
+    }
+
+    #[test]
+    fn viewports_have_limits() {
+        for (width, height) in [(0, 1), (1, 0), (0, 0), (Viewport::MAX_SIDE + 1, 1), (1, u32::MAX)] {
+            let view = View::new(Mat4::IDENTITY, perspective(), Viewport::new(width, height));
+            assert!(matches!(view, Err(Error::Viewport { .. })), "{width} × {height}");
+        }
+        assert!(View::new(Mat4::IDENTITY, perspective(), Viewport::new(1, 1)).is_ok());
+    }
+
+    #[test]
+    fn the_eye_is_a_point_or_a_direction() {
+        let eye = Vec3::new(3.0, -2.0, 7.0);
+        let view = View::look_at(eye, Vec3::ZERO, 60.0, 0.1, Viewport::new(10, 10)).unwrap();
+        assert!((view.eye() - eye.extend(1.0)).abs().max_element() < 1e-5, "{}", view.eye());
+        assert!((view.forward() + eye.normalize()).length() < 1e-6);
+        let turn = Mat4::from_rotation_y(0.3);
+        let flat =
+            View::new(turn, projection::orthographic(4.0, 4.0, 0.1, 9.0), Viewport::new(10, 10)).unwrap();
+        assert_eq!(flat.eye().w, 0.0);
+        assert!((flat.eye().truncate() + flat.forward()).length() < 1e-6);
+    }
+
+    #[test]
+    fn an_oblique_near_plane_is_where_it_was_asked_for() {
+        // The plane 0.6·x − 0.8·z = 2, kept beyond it.
+        let plane = Vec4::new(0.6, 0.0, -0.8, -2.0);
+        let m = projection::oblique(perspective(), plane);
+        for on_plane in [Vec3::new(0.0, 0.0, -2.5), Vec3::new(0.4, 0.3, -2.2)] {
+            let clip = m * on_plane.extend(1.0);
+            assert!((clip.z / clip.w - 1.0).abs() < 1e-5, "{clip}");
+        }
+        let beyond = m * Vec4::new(0.0, 0.0, -30.0, 1.0);
+        assert!((0.0..1.0).contains(&(beyond.z / beyond.w)));
+        let before = m * Vec4::new(0.0, 0.0, -1.0, 1.0);
+        assert!(before.z > before.w);
+    }
+
+    #[test]
+    fn the_clip_error_bounds_what_f32_does() {
+        let view = View::look_at(Vec3::splat(1e5), Vec3::ZERO, 60.0, 0.1, Viewport::new(10, 10)).unwrap();
+        let single = view.clip_from_view() * view.view_from_world();
+        for p in [Vec3::ZERO, Vec3::splat(9e4), Vec3::new(-3e4, 17.0, 5e-3)] {
+            let exact = *view.clip_from_world() * p.as_dvec3().extend(1.0);
+            let off = ((single * p.extend(1.0)).as_dvec4() - exact).abs();
+            let bound = view.clip_error(p.as_dvec3().abs());
+            assert!(off.cmple(bound).all(), "{off} of {bound}");
+            assert!(bound.max_element() < 1.0, "{bound}");
+        }
+    }
+}

@@ -15,7 +15,7 @@ mod recorded;
 mod statistical;
 mod stop_and_wait;
 
-pub use dual_query::DualQuery;
+pub use dual_query::{DualQuery, Order};
 pub use frustum::FrustumOnly;
 pub use history::{History, NodeState};
 pub use none::DrawAll;

@@ -6,6 +6,8 @@
 //! costs its rows of tiles, not the number of questions in flight. Two rectangles that only share
 //! a tile count as meeting, which holds back a little more than needed.
 
+use std::ops::RangeInclusive;
+
 use crate::geom::{PixelRect, Viewport};
 
 /// The tiles of the screen that waiting questions cover.
@@ -30,17 +32,28 @@ impl ScreenTiles {
         self.rows.fill(0);
     }
 
+    /// Whether one of a rectangle's tiles is covered.
+    pub fn meets(&self, rect: PixelRect) -> bool {
+        let (rows, mask) = self.tiles(rect);
+        self.rows[rows].iter().any(|row| row & mask != 0)
+    }
+
     /// Covers the tiles of a rectangle; true if one of them was covered before.
     pub fn cover(&mut self, rect: PixelRect) -> bool {
-        let (x0, x1) = (tile(rect.x0, self.width), tile(rect.x1.max(1) - 1, self.width));
-        let (y0, y1) = (tile(rect.y0, self.height), tile(rect.y1.max(1) - 1, self.height));
-        let mask = (u64::MAX >> (63 - (x1 - x0))) << x0;
+        let (rows, mask) = self.tiles(rect);
         let mut met = false;
-        for row in &mut self.rows[y0..=y1] {
+        for row in &mut self.rows[rows] {
             met |= *row & mask != 0;
             *row |= mask;
         }
         met
+    }
+
+    /// The rows of tiles that a rectangle meets, and its bits in each.
+    fn tiles(&self, rect: PixelRect) -> (RangeInclusive<usize>, u64) {
+        let (x0, x1) = (tile(rect.x0, self.width), tile(rect.x1.max(1) - 1, self.width));
+        let (y0, y1) = (tile(rect.y0, self.height), tile(rect.y1.max(1) - 1, self.height));
+        (y0..=y1, (u64::MAX >> (63 - (x1 - x0))) << x0)
     }
 }
 

@@ -5,12 +5,16 @@
 //! inverted) spoils nothing: its object is drawn always until it is mended, and the report names
 //! it. Positions are f32, relative to a movable f64 origin.
 
+#[cfg(any(feature = "gltf", feature = "lod"))]
+mod compact;
 mod components;
 mod edit;
 #[cfg(feature = "gltf")]
 pub mod gltf;
 #[cfg(feature = "gltf")]
 pub mod import;
+#[cfg(feature = "lod")]
+pub mod lod;
 pub mod mesh;
 mod object;
 mod objects;

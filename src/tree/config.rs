@@ -104,23 +104,25 @@ impl TreeConfig {
         }
     }
 
-    /// The default: hysteresis and a budget, planes that cut few objects, straddlers split along
-    /// the other axes, boxes always tight, small leaves.
+    /// The default: leaves of one or two objects, as far as they can be told apart, since asking
+    /// about an object costs less than drawing one in vain; planes that cut few objects,
+    /// straddlers split along the other axes, boxes always tight; hysteresis and a budget for
+    /// what the votes change.
     pub const fn stable() -> Self {
         Self {
-            r_split: 0.1,
+            r_split: 0.001,
             o_split: 2,
-            r_merge: 0.05,
-            o_merge: 4,
+            r_merge: 0.0,
+            o_merge: 2,
             axis: SplitAxis::Longest,
             plane: SplitPlane::SurfaceArea,
             straddlers: Straddlers::Split,
             tight_boxes: TightBoxes::Always,
             settle_frames: 4,
-            bulk_leaf: 8,
+            bulk_leaf: 2,
             cooldown: 30,
             merge_below_split: true,
-            budget: 256,
+            budget: 1024,
             idle_frames: 600,
         }
     }

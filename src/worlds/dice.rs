@@ -51,6 +51,17 @@ impl Dice {
         }
     }
 
+    /// A unit quaternion, x y z w: a direction in four dimensions, found as in three.
+    pub(super) fn orientation(&mut self) -> [f32; 4] {
+        loop {
+            let q = [0; 4].map(|_| self.range(-1.0, 1.0));
+            let square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+            if (0.01..=1.0).contains(&square) {
+                return q.map(|c| c / square.sqrt());
+            }
+        }
+    }
+
     /// Fisher and Yates' shuffle.
     pub(super) fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {

@@ -6,7 +6,9 @@
 
 mod dice;
 mod path;
+mod pathological;
 pub mod power_plant;
+mod random;
 mod shape;
 mod swarm;
 
@@ -18,7 +20,9 @@ use crate::scene::mesh::Mesh;
 use crate::scene::{Bounds, NotOccluder};
 
 pub use path::{CameraPath, Pose};
+pub use pathological::{Pathology, pathological};
 pub use power_plant::power_plant;
+pub use random::random;
 #[cfg(feature = "gltf")]
 pub use swarm::bunny_mesh;
 pub use swarm::{Motion, Swarm};
@@ -86,6 +90,15 @@ impl Model {
             }
         }
     }
+}
+
+/// The axes of a rotation: the columns of the matrix of a unit quaternion, x y z w.
+fn rotation([x, y, z, w]: [f32; 4]) -> [Vec3; 3] {
+    [
+        Vec3::new(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)),
+        Vec3::new(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)),
+        Vec3::new(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)),
+    ]
 }
 
 /// A transform from its columns, written out so that no product of matrices is involved.

@@ -2,6 +2,9 @@
 
 use glam::Vec3;
 
+use super::shape::turn;
+use crate::geom::Aabb;
+
 /// Where a camera is and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -51,6 +54,22 @@ impl CameraPath {
             knots.push(knots[knots.len() - 1] + way.max(1e-3).sqrt());
         }
         Self { points, knots, fov_y_degrees }
+    }
+
+    /// Once around a box, a little above it, looking at its middle: for worlds without a way
+    /// through them. An empty box is circled as a point at the origin.
+    pub fn around(bounds: &Aabb) -> Self {
+        const POINTS: usize = 16;
+        let (center, half) = match bounds.is_empty() {
+            true => (Vec3::ZERO, Vec3::ZERO),
+            false => (bounds.center(), bounds.max * 0.5 - bounds.min * 0.5),
+        };
+        let radius = 1.5 * half.length() + 1.0;
+        let eye = |k| {
+            let (cos, sin) = turn(k, POINTS);
+            center + Vec3::new(radius * sin, 0.5 * radius, radius * cos)
+        };
+        Self::new(60.0, (0..=POINTS).map(|k| (eye(k), center)))
     }
 
     /// The pose at time `t`, 0 at the first point, 1 at the last; times outside are clamped, NaN

@@ -144,7 +144,8 @@ impl Shape {
     /// A vessel: a cylinder between two domes, each half as high as wide; `height` from tip to tip.
     pub(super) fn vessel(&mut self, stand: Stand, radius: f32, height: f32, segments: usize) {
         let rings = (segments / 4).max(2);
-        self.off_by(sagitta(radius, 4 * rings));
+        // A dome recedes in both directions.
+        self.off_by(sagitta(radius, 4 * rings) + sagitta(radius, segments));
         let dome = |k: usize| {
             let (cos, sin) = turn(k, 4 * rings);
             [radius * sin, 0.5 * radius * cos]
@@ -187,13 +188,13 @@ impl Shape {
         for i in 0..along as u32 {
             for k in 0..n {
                 let [a, b] = [k, (k + 1) % n].map(|k| first + i * n + k);
-                self.indices.extend([a, b + n, b, a, a + n, b + n]);
+                self.indices.extend([a, b, b + n, a, b + n, a + n]);
             }
         }
         for k in 1..n - 1 {
             let end = first + along as u32 * n;
-            self.indices.extend([first, first + k, first + k + 1]);
-            self.indices.extend([end, end + k + 1, end + k]);
+            self.indices.extend([first, first + k + 1, first + k]);
+            self.indices.extend([end, end + k, end + k + 1]);
         }
     }
 

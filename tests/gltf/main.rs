@@ -424,6 +424,16 @@ fn objects_beyond_f32_are_left_out_and_singular_ones_kept() {
 }
 
 #[test]
+fn a_coarser_level_is_not_shown_beside_the_finest() {
+    let mut w = scenes::nested();
+    w.json["nodes"][0]["extensions"] = json!({ "MSFT_lod": { "ids": [4, 3] } });
+    let imported = read(&w);
+    let skipped: Vec<_> = imported.report.skipped.iter().map(|r| (&*r.element, &*r.reason)).collect();
+    let reason = "it is a coarser level of node 0";
+    assert_eq!((imported.report.objects, skipped), (3, vec![("node 3", reason), ("node 4", reason)]));
+}
+
+#[test]
 fn a_file_without_scenes_shows_every_node() {
     let mut w = scenes::nested();
     let json = w.json.as_object_mut().expect("a root");

@@ -193,6 +193,10 @@ const SPOILT: &[(Spoil, &[&str])] = &[
         },
         &["its attributes are not of one length"],
     ),
+    (
+        |w| w.json["nodes"][1]["extensions"] = json!({ "MSFT_lod": { "ids": [3] } }),
+        &["node 1 'Middle': MSFT_lod: node 3 does not exist"],
+    ),
     (|w| w.json["asset"]["version"] = json!("1.0"), &["asset: glTF 1.0"]),
     (|w| remove(&mut w.json, "asset"), &["missing field `asset`"]),
     (

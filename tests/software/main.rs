@@ -2,5 +2,6 @@
 
 mod clipping;
 mod coverage;
+mod oracle;
 mod questions;
 mod support;

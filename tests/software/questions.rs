@@ -10,7 +10,7 @@ use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 use crate::support::{LEVELS, add, dice, draw, pixel_view, pool, soup, triangles};
 
 /// A question whose answer nobody waits for.
-pub fn ask_anything(queries: &mut SoftwareQueries) {
+pub(crate) fn ask_anything(queries: &mut SoftwareQueries) {
     queries.ask(Ticket(0), &[flat(PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 }, 0.5)], Want::Any).expect("ask");
     queries.answers(Wait::Block, |_, _| {}).expect("answers");
 }
@@ -75,7 +75,7 @@ fn answers_equal_the_plain_loop() {
             pool(threads).install(|| {
                 for level in LEVELS {
                     let mut queries = SoftwareQueries::with_level(level);
-                    draw(&mut queries, &view, &[near.clone()]);
+                    draw(&mut queries, &view, std::slice::from_ref(&near));
                     // The second wave sees a hierarchy that was brought up to date in part.
                     for more in [None, Some(&far)] {
                         if let Some(mesh) = more {

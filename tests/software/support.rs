@@ -9,15 +9,15 @@ use tercet::query::QueryBackend;
 use tercet::query::software::{SimdLevel, SoftwareQueries};
 use tercet::scene::mesh::Mesh;
 
-pub const LEVELS: [SimdLevel; 3] = [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Avx512];
+pub(crate) const LEVELS: [SimdLevel; 3] = [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Avx512];
 
-pub fn dice(seed: u64) -> ChaCha8Rng {
+pub(crate) fn dice(seed: u64) -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(seed)
 }
 
 /// A view whose world is the screen: x and y in pixels, y down, z the nearness. Exact in f32 for
 /// sides that are powers of two and coordinates of at most 24 bits.
-pub fn pixel_view(width: u32, height: u32) -> View {
+pub(crate) fn pixel_view(width: u32, height: u32) -> View {
     let m = Mat4::from_cols_array_2d(&[
         [2.0 / width as f32, 0.0, 0.0, 0.0],
         [0.0, -2.0 / height as f32, 0.0, 0.0],
@@ -28,20 +28,20 @@ pub fn pixel_view(width: u32, height: u32) -> View {
 }
 
 /// A mesh of loose triangles.
-pub fn soup(triangles: &[[Vec3; 3]]) -> Mesh {
+pub(crate) fn soup(triangles: &[[Vec3; 3]]) -> Mesh {
     let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();
     let indices = (0..positions.len() as u32).collect();
     Mesh::new("soup", positions, indices).expect("a mesh")
 }
 
 /// Draws meshes, at their own place, into a frame of its own.
-pub fn draw(queries: &mut SoftwareQueries, view: &View, meshes: &[Mesh]) {
+pub(crate) fn draw(queries: &mut SoftwareQueries, view: &View, meshes: &[Mesh]) {
     queries.begin(view).expect("begin");
     add(queries, meshes);
 }
 
 /// Draws meshes on top of what is there.
-pub fn add(queries: &mut SoftwareQueries, meshes: &[Mesh]) {
+pub(crate) fn add(queries: &mut SoftwareQueries, meshes: &[Mesh]) {
     queries
         .draw(|pass| {
             for mesh in meshes {
@@ -52,20 +52,20 @@ pub fn add(queries: &mut SoftwareQueries, meshes: &[Mesh]) {
 }
 
 /// The whole depth, row after row.
-pub fn depth(queries: &SoftwareQueries) -> Vec<f32> {
+pub(crate) fn depth(queries: &SoftwareQueries) -> Vec<f32> {
     let image = queries.depth();
     (0..image.height()).flat_map(|y| image.row(y).to_vec()).collect()
 }
 
 /// A pool of a number of threads.
-pub fn pool(threads: usize) -> rayon::ThreadPool {
+pub(crate) fn pool(threads: usize) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool")
 }
 
 /// Nearness at the samples that a triangle covers, by the definition: integer edge functions at
 /// 1/256 pixel in i128, the top-left rule by the direction of each edge, depth from the exact
 /// barycentrics in f64. `None` where it does not cover.
-pub fn reference(triangle: &[Vec3; 3], width: u32, height: u32) -> Vec<Option<f64>> {
+pub(crate) fn reference(triangle: &[Vec3; 3], width: u32, height: u32) -> Vec<Option<f64>> {
     let mut p = triangle.map(|v| (snap(v.x), snap(v.y), f64::from(v.z)));
     let area = orient(p[0], p[1], (p[2].0, p[2].1));
     if area < 0 {
@@ -102,7 +102,7 @@ fn snap(v: f32) -> i128 {
 
 /// Random triangles in and around a viewport, of many shapes. Coordinates are multiples of 1/256
 /// and at most a few thousand pixels away, so that a pixel view keeps them exact.
-pub fn triangles(dice: &mut ChaCha8Rng, count: usize, width: u32, height: u32) -> Vec<[Vec3; 3]> {
+pub(crate) fn triangles(dice: &mut ChaCha8Rng, count: usize, width: u32, height: u32) -> Vec<[Vec3; 3]> {
     let (w, h) = (width as f32, height as f32);
     let grid = |v: f32| (v * 256.0).round() / 256.0;
     (0..count)

@@ -4,7 +4,8 @@ use glam::Mat4;
 
 use super::clip::clip;
 use super::pass::DrawCall;
-use super::raster::{Id, LANES, SMALL_EXTENT, TINY_SIDE, TinyBatch, Triangle, first_sample, last_sample};
+use super::raster::{ALL_LANES, Id, LANES, TINY_SIDE, TinyBatch, Triangle, negative};
+use super::setup::{SMALL_EXTENT, first_sample, last_sample};
 use super::vertex::{CODE_W_MINUS_Z, CODE_Z, Screen, Vertex, clip_position};
 
 /// A draw call in a wave: where its vertices and triangles lie in the wave's buffers.
@@ -110,7 +111,6 @@ pub(crate) fn bin<const WITH_IDS: bool>(wave: &Wave<'_>, index: usize, chunk: &m
     let mut next = index * CHUNK;
     let end = (next + CHUNK).min(wave.triangles);
     let mut batch = TinyBatch::EMPTY;
-    let mut codes = [0_u32; LANES];
     let mut filled = 0;
     let mut at = wave.instances.partition_point(|i| i.first_triangle as usize <= next) - 1;
     while next < end {
@@ -120,31 +120,35 @@ pub(crate) fn bin<const WITH_IDS: bool>(wave: &Wave<'_>, index: usize, chunk: &m
         let first = next - instance.first_triangle as usize;
         let count = (geometry.indices.len() / 3 - first).min(end - next);
         let mut triangle = first as u32;
-        for corners in geometry.indices[3 * first..3 * (first + count)].chunks_exact(3) {
-            let v =
-                [vertices[corners[0] as usize], vertices[corners[1] as usize], vertices[corners[2] as usize]];
-            for k in 0..3 {
-                batch.x[k][filled] = v[k].x;
-                batch.y[k][filled] = v[k].y;
-                batch.nearness[k][filled] = v[k].nearness;
-            }
-            codes[filled] = v[0].code | v[1].code | v[2].code;
-            if codes[filled] != 0 {
-                let out = v[0].code & v[1].code & v[2].code & (CODE_W_MINUS_Z | CODE_Z);
-                if out == 0 {
+        let (corners, _) = geometry.indices[3 * first..3 * (first + count)].as_chunks::<3>();
+        for corners in corners {
+            let (a, b) = (&vertices[corners[0] as usize], &vertices[corners[1] as usize]);
+            let c = &vertices[corners[2] as usize];
+            if a.code | b.code | c.code != 0 {
+                if a.code & b.code & c.code & (CODE_W_MINUS_Z | CODE_Z) == 0 {
                     let id = Id { call: instance.call, triangle };
-                    clip_and_bin(wave, instance, corners, v, id, chunk);
+                    clip_and_bin(wave, instance, corners, [*a, *b, *c], id, chunk);
                 }
-            } else {
-                if WITH_IDS {
-                    batch.call[filled] = instance.call;
-                    batch.triangle[filled] = triangle;
-                }
-                filled += 1;
-                if filled == LANES {
-                    keep::<WITH_IDS>(wave, &batch, LANES, chunk);
-                    filled = 0;
-                }
+                triangle += 1;
+                continue;
+            }
+            batch.x[0][filled] = a.x;
+            batch.x[1][filled] = b.x;
+            batch.x[2][filled] = c.x;
+            batch.y[0][filled] = a.y;
+            batch.y[1][filled] = b.y;
+            batch.y[2][filled] = c.y;
+            batch.nearness[0][filled] = a.nearness;
+            batch.nearness[1][filled] = b.nearness;
+            batch.nearness[2][filled] = c.nearness;
+            if WITH_IDS {
+                batch.call[filled] = instance.call;
+                batch.triangle[filled] = triangle;
+            }
+            filled += 1;
+            if filled == LANES {
+                keep::<WITH_IDS>(wave, &batch, LANES, chunk);
+                filled = 0;
             }
             triangle += 1;
         }
@@ -177,12 +181,8 @@ fn keep<const WITH_IDS: bool>(wave: &Wave<'_>, batch: &TinyBatch, count: usize, 
             | SMALL_EXTENT.wrapping_sub(right.wrapping_sub(left))
             | SMALL_EXTENT.wrapping_sub(bottom.wrapping_sub(top));
     }
-    let (mut kept, mut singles) = (0_u32, 0_u32);
-    for i in 0..LANES {
-        kept |= u32::from(empty[i] >= 0) << i;
-        singles |= u32::from(not_tiny[i] < 0) << i;
-    }
-    kept &= (1_u32 << count) - 1;
+    let mut kept = (negative(&empty) ^ ALL_LANES) & ((1 << count) - 1);
+    let singles = negative(&not_tiny);
     chunk.kept += u64::from(kept.count_ones());
     while kept != 0 {
         let i = kept.trailing_zeros() as usize;
@@ -216,7 +216,7 @@ fn bands(wave: &Wave<'_>, first_row: i32, last_row: i32) -> (usize, usize) {
 fn clip_and_bin(
     wave: &Wave<'_>,
     instance: &Instance,
-    corners: &[u32],
+    corners: &[u32; 3],
     v: [Vertex; 3],
     id: Id,
     chunk: &mut Chunk,

@@ -8,6 +8,8 @@
 //! *including* rounding. The least of several such functions is bounded by the least of their
 //! bounds.
 
+#![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
+
 use super::depth::Depth;
 use super::hi_z::{HiZ, TILE_HEIGHT, TILE_WIDTH};
 use super::raster::LANES;
@@ -30,43 +32,86 @@ pub(crate) fn is_usable(proxy: &Proxy) -> bool {
     proxy.edges.iter().all(fits) && proxy.planes.iter().all(fits) && !proxy.nearest.is_nan()
 }
 
-/// Nine affine functions with a lane each: six edges, then three planes.
-const FUNCTIONS: usize = 16;
-const EDGES: usize = 6;
-const PLANES: usize = 9;
+/// Lanes for the six edges; the others are 0 everywhere, which covers.
+const EDGES: usize = 8;
+/// Lanes of those that a proxy can use.
+const USED_EDGES: usize = 6;
+/// Lanes for the three planes, and `nearest` as a fourth.
+const PLANES: usize = 4;
 
-struct Functions {
-    a: [f32; FUNCTIONS],
-    b: [f32; FUNCTIONS],
-    c: [f32; FUNCTIONS],
+/// Affine functions, a lane each.
+#[derive(Clone, Copy)]
+struct Functions<const N: usize> {
+    a: [f32; N],
+    b: [f32; N],
+    c: [f32; N],
 }
 
-impl Functions {
+impl<const N: usize> Functions<N> {
+    const ZERO: Self = Self { a: [0.0; N], b: [0.0; N], c: [0.0; N] };
+
     #[inline(always)]
-    fn new(proxy: &Proxy) -> Self {
-        let mut f = Self { a: [0.0; FUNCTIONS], b: [0.0; FUNCTIONS], c: [0.0; FUNCTIONS] };
-        for (i, function) in proxy.edges.iter().chain(&proxy.planes).enumerate() {
-            f.a[i] = function[0];
-            f.b[i] = function[1];
-            f.c[i] = function[2];
-        }
-        f
+    fn set(&mut self, i: usize, function: [f32; 3]) {
+        (self.a[i], self.b[i], self.c[i]) = (function[0], function[1], function[2]);
     }
 
     /// The greatest and the least value of each function over the samples of a rectangle, given
     /// by the offsets of its first and last sample.
     #[inline(always)]
-    fn extremes(&self, first: [f32; 2], last: [f32; 2]) -> ([f32; FUNCTIONS], [f32; FUNCTIONS]) {
-        let mut greatest = [0.0; FUNCTIONS];
-        let mut least = [0.0; FUNCTIONS];
-        for i in 0..FUNCTIONS {
+    fn extremes(&self, first: [f32; 2], last: [f32; 2]) -> ([f32; N], [f32; N]) {
+        let mut greatest = [0.0; N];
+        let mut least = [0.0; N];
+        for i in 0..N {
             let (a, b, c) = (self.a[i], self.b[i], self.c[i]);
-            let (high_x, low_x) = if a >= 0.0 { (last[0], first[0]) } else { (first[0], last[0]) };
-            let (high_y, low_y) = if b >= 0.0 { (last[1], first[1]) } else { (first[1], last[1]) };
+            let high_x = if a >= 0.0 { last[0] } else { first[0] };
+            let low_x = if a >= 0.0 { first[0] } else { last[0] };
+            let high_y = if b >= 0.0 { last[1] } else { first[1] };
+            let low_y = if b >= 0.0 { first[1] } else { last[1] };
             greatest[i] = (a * high_x + b * high_y) + c;
             least[i] = (a * low_x + b * low_y) + c;
         }
         (greatest, least)
+    }
+}
+
+/// A proxy in lanes.
+struct Shape {
+    origin: [u32; 2],
+    edges: Functions<EDGES>,
+    planes: Functions<PLANES>,
+}
+
+impl Shape {
+    #[inline(always)]
+    fn new(proxy: &Proxy) -> Self {
+        let mut shape = Self { origin: proxy.origin(), edges: Functions::ZERO, planes: Functions::ZERO };
+        for (i, edge) in proxy.edges.iter().enumerate() {
+            shape.edges.set(i, *edge);
+        }
+        for (i, plane) in proxy.planes.iter().enumerate() {
+            shape.planes.set(i, *plane);
+        }
+        shape.planes.set(PLANES - 1, [0.0, 0.0, proxy.nearest]);
+        shape
+    }
+
+    #[inline(always)]
+    fn judge(&self, part: &PixelRect) -> Verdict {
+        let first = [offset(part.x0, self.origin[0]), offset(part.y0, self.origin[1])];
+        let last = [offset(part.x1 - 1, self.origin[0]), offset(part.y1 - 1, self.origin[1])];
+        let (greatest, least) = self.edges.extremes(first, last);
+        let (mut outside, mut cut) = (0, 0);
+        for i in 0..EDGES {
+            outside |= i32::from(greatest[i] < 0.0);
+            cut |= i32::from(least[i] < 0.0);
+        }
+        let (greatest, least) = self.planes.extremes(first, last);
+        Verdict {
+            outside: outside != 0,
+            inside: cut == 0,
+            entry_most: lesser(lesser(greatest[0], greatest[1]), lesser(greatest[2], greatest[3])),
+            entry_least: lesser(lesser(least[0], least[1]), lesser(least[2], least[3])),
+        }
     }
 }
 
@@ -80,24 +125,6 @@ struct Verdict {
     entry_most: f32,
     /// The entry nearness of no sample is below this.
     entry_least: f32,
-}
-
-#[inline(always)]
-fn judge(functions: &Functions, nearest: f32, origin: [u32; 2], part: &PixelRect) -> Verdict {
-    let first = [offset(part.x0, origin[0]), offset(part.y0, origin[1])];
-    let last = [offset(part.x1 - 1, origin[0]), offset(part.y1 - 1, origin[1])];
-    let (greatest, least) = functions.extremes(first, last);
-    let (mut outer, mut inner) = (f32::INFINITY, f32::INFINITY);
-    for i in 0..EDGES {
-        outer = lesser(greatest[i], outer);
-        inner = lesser(least[i], inner);
-    }
-    let (mut entry_most, mut entry_least) = (nearest, nearest);
-    for i in EDGES..PLANES {
-        entry_most = lesser(greatest[i], entry_most);
-        entry_least = lesser(least[i], entry_least);
-    }
-    Verdict { outside: outer < 0.0, inside: inner >= 0.0, entry_most, entry_least }
 }
 
 /// The contract's `dx` and `dy`. Exact: a viewport's side fits f32 with a half to spare.
@@ -118,20 +145,25 @@ const STACK: usize = 64;
 #[inline(always)]
 pub(crate) fn any(scene: Scene<'_>, proxy: &Proxy) -> bool {
     let mut found = false;
-    walk(scene, proxy, |part, functions, verdict, (farthest, nearest), is_leaf| {
-        if verdict.entry_most < farthest {
-            return Step::Over;
-        }
-        if verdict.inside && verdict.entry_least >= nearest {
-            found = true;
-            return Step::Stop;
-        }
-        if !is_leaf {
-            return Step::Into;
-        }
-        found = samples(scene.depth, proxy, functions, part).0 > 0;
-        if found { Step::Stop } else { Step::Over }
-    });
+    walk(
+        scene,
+        proxy,
+        #[inline(always)]
+        |part, shape, verdict, (farthest, nearest), is_leaf| {
+            if verdict.entry_most < farthest {
+                return Step::Over;
+            }
+            if verdict.inside && verdict.entry_least >= nearest {
+                found = true;
+                return Step::Stop;
+            }
+            if !is_leaf {
+                return Step::Into;
+            }
+            found = samples(scene.depth, shape, part).0 > 0;
+            if found { Step::Stop } else { Step::Over }
+        },
+    );
     found
 }
 
@@ -139,25 +171,30 @@ pub(crate) fn any(scene: Scene<'_>, proxy: &Proxy) -> bool {
 #[inline(always)]
 pub(crate) fn dual(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
     let (mut visible, mut total) = (0, 0);
-    walk(scene, proxy, |part, functions, verdict, (farthest, nearest), is_leaf| {
-        let area = (part.x1 - part.x0) * (part.y1 - part.y0);
-        if verdict.inside && verdict.entry_most < farthest {
-            total += area;
-            return Step::Over;
-        }
-        if verdict.inside && verdict.entry_least >= nearest {
-            visible += area;
-            total += area;
-            return Step::Over;
-        }
-        if !is_leaf {
-            return Step::Into;
-        }
-        let (v, t) = samples(scene.depth, proxy, functions, part);
-        visible += v;
-        total += t;
-        Step::Over
-    });
+    walk(
+        scene,
+        proxy,
+        #[inline(always)]
+        |part, shape, verdict, (farthest, nearest), is_leaf| {
+            let area = (part.x1 - part.x0) * (part.y1 - part.y0);
+            if verdict.inside && verdict.entry_most < farthest {
+                total += area;
+                return Step::Over;
+            }
+            if verdict.inside && verdict.entry_least >= nearest {
+                visible += area;
+                total += area;
+                return Step::Over;
+            }
+            if !is_leaf {
+                return Step::Into;
+            }
+            let (v, t) = samples(scene.depth, shape, part);
+            visible += v;
+            total += t;
+            Step::Over
+        },
+    );
     (visible, total)
 }
 
@@ -174,7 +211,7 @@ enum Step {
 fn walk(
     scene: Scene<'_>,
     proxy: &Proxy,
-    mut visit: impl FnMut(&PixelRect, &Functions, &Verdict, (f32, f32), bool) -> Step,
+    mut visit: impl FnMut(&PixelRect, &Shape, &Verdict, (f32, f32), bool) -> Step,
 ) {
     let image = scene.depth.image();
     let rect = PixelRect {
@@ -185,7 +222,7 @@ fn walk(
     if rect.x0 >= rect.x1 || rect.y0 >= rect.y1 {
         return;
     }
-    let functions = Functions::new(proxy);
+    let shape = Shape::new(proxy);
     let (level, first, last) = scene.hi_z.cover(&rect);
     let mut stack = [(0_u32, 0_u32, 0_u32); STACK];
     let mut height = 0;
@@ -208,12 +245,12 @@ fn walk(
         if part.x0 >= part.x1 || part.y0 >= part.y1 {
             continue;
         }
-        let verdict = judge(&functions, proxy.nearest, [proxy.rect.x0, proxy.rect.y0], &part);
+        let verdict = shape.judge(&part);
         if verdict.outside {
             continue;
         }
         let tile = scene.hi_z.tile(level as usize, x, y);
-        match visit(&part, &functions, &verdict, tile, level == 0) {
+        match visit(&part, &shape, &verdict, tile, level == 0) {
             Step::Stop => return,
             Step::Over => {}
             Step::Into => {
@@ -228,40 +265,48 @@ fn walk(
 
 /// The plain loop over the samples of part of one tile: visible and covered ones.
 #[inline(always)]
-fn samples(depth: &Depth, proxy: &Proxy, f: &Functions, part: &PixelRect) -> (u32, u32) {
-    // Lanes are the tile's columns: those outside the part have their bit of `in_part` cleared.
+fn samples(depth: &Depth, shape: &Shape, part: &PixelRect) -> (u32, u32) {
+    // Lanes are the tile's columns; those outside the part have no bit in `in_part`.
     let first_column = part.x0 / TILE_WIDTH * TILE_WIDTH;
-    let mut dx = [0.0_f32; LANES];
     let mut in_part = [0_i32; LANES];
+    let mut edges_x = [[0.0_f32; LANES]; EDGES];
+    let mut planes_x = [[0.0_f32; LANES]; PLANES];
     for i in 0..LANES {
         let column = first_column + i as u32;
-        dx[i] = offset(column, proxy.rect.x0);
-        in_part[i] = -i32::from(column >= part.x0 && column < part.x1);
+        let dx = offset(column, shape.origin[0]);
+        in_part[i] = -(i32::from(column >= part.x0) & i32::from(column < part.x1));
+        for k in 0..EDGES {
+            edges_x[k][i] = shape.edges.a[k] * dx;
+        }
+        for k in 0..PLANES {
+            planes_x[k][i] = shape.planes.a[k] * dx;
+        }
     }
     let mut visible = [0_i32; LANES];
     let mut total = [0_i32; LANES];
     for row in part.y0..part.y1 {
-        let dy = offset(row, proxy.rect.y0);
+        let dy = offset(row, shape.origin[1]);
+        let mut edges_y = [0.0; EDGES];
+        let mut planes_y = [0.0; PLANES];
+        for k in 0..EDGES {
+            edges_y[k] = shape.edges.b[k] * dy;
+        }
+        for k in 0..PLANES {
+            planes_y[k] = shape.planes.b[k] * dy;
+        }
         let start = row as usize * depth.stride() + first_column as usize;
         let Some(nearness) = depth.all()[start..].first_chunk::<LANES>() else { continue };
-        let mut outer = [f32::INFINITY; LANES];
-        let mut entry = [proxy.nearest; LANES];
-        for k in 0..EDGES {
-            let by = f.b[k] * dy;
-            for i in 0..LANES {
-                outer[i] = lesser((f.a[k] * dx[i] + by) + f.c[k], outer[i]);
-            }
-        }
-        for k in EDGES..PLANES {
-            let by = f.b[k] * dy;
-            for i in 0..LANES {
-                entry[i] = lesser((f.a[k] * dx[i] + by) + f.c[k], entry[i]);
-            }
-        }
         for i in 0..LANES {
-            let covered = in_part[i] & -i32::from(outer[i] >= 0.0);
+            let (mut outer, mut entry) = (f32::INFINITY, f32::INFINITY);
+            for k in 0..USED_EDGES {
+                outer = lesser((edges_x[k][i] + edges_y[k]) + shape.edges.c[k], outer);
+            }
+            for k in 0..PLANES {
+                entry = lesser((planes_x[k][i] + planes_y[k]) + shape.planes.c[k], entry);
+            }
+            let covered = in_part[i] & -i32::from(outer >= 0.0);
             total[i] -= covered;
-            visible[i] -= covered & -i32::from(entry[i] >= nearness[i]);
+            visible[i] -= covered & -i32::from(entry >= nearness[i]);
         }
     }
     (visible.iter().sum::<i32>() as u32, total.iter().sum::<i32>() as u32)

@@ -98,8 +98,8 @@ impl Sink for DepthSink<'_> {
         let start = (row - self.rows.first) as usize * self.stride + column as usize;
         let Some(kept) = self.nearness[start..].first_chunk_mut::<LANES>() else { return };
         for i in 0..LANES {
-            let nearer = outside[i] >= 0 && nearness[i] > kept[i];
-            kept[i] = if nearer { nearness[i] } else { kept[i] };
+            let n = masked(nearness[i], outside[i]);
+            kept[i] = if n > kept[i] { n } else { kept[i] };
         }
     }
 
@@ -110,4 +110,11 @@ impl Sink for DepthSink<'_> {
             *kept = nearness;
         }
     }
+}
+
+/// A nearness, or minus infinity if `outside` is negative. In bits, for want of branches.
+#[inline(always)]
+fn masked(nearness: f32, outside: i32) -> f32 {
+    let mask = (outside >> 31) as u32;
+    f32::from_bits((nearness.to_bits() & !mask) | (f32::NEG_INFINITY.to_bits() & mask))
 }

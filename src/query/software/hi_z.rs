@@ -75,16 +75,6 @@ impl HiZ {
         self.dirty = false;
     }
 
-    /// How many levels there are.
-    pub(crate) fn levels(&self) -> usize {
-        self.levels.len()
-    }
-
-    /// Tiles of a level: across and down.
-    pub(crate) fn size(&self, level: usize) -> (u32, u32) {
-        (self.levels[level].width as u32, self.levels[level].height as u32)
-    }
-
     /// The farthest and the nearest nearness in a tile.
     #[inline(always)]
     pub(crate) fn tile(&self, level: usize, x: u32, y: u32) -> (f32, f32) {
@@ -242,6 +232,107 @@ pub(crate) fn fold_tiles(row: TileRow<'_>) {
             let columns = (row.width - tile * LANES).min(LANES);
             row.farthest[tile] = low[..columns].iter().fold(f32::INFINITY, |a, &b| a.min(b));
             row.nearest[tile] = high[..columns].iter().fold(f32::NEG_INFINITY, |a, &b| a.max(b));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::raster::{Id, Sink};
+    use super::*;
+    use rand::RngExt;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+
+    const SIZES: [(u32, u32); 8] =
+        [(1, 1), (1, 33), (33, 1), (16, 8), (17, 9), (17, 3), (160, 90), (1023, 767)];
+
+    /// The first tile of any level that does not hold the extremes of its pixels.
+    fn wrong_tile(hi_z: &HiZ, depth: &Depth) -> Option<(usize, u32, u32)> {
+        let (width, height) = (depth.image().width(), depth.image().height());
+        for (l, level) in hi_z.levels.iter().enumerate() {
+            for y in 0..level.height as u32 {
+                for x in 0..level.width as u32 {
+                    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+                    for row in (y * TILE_HEIGHT) << l..(((y + 1) * TILE_HEIGHT) << l).min(height) {
+                        let columns = ((x * TILE_WIDTH) << l) as usize
+                            ..(((x + 1) * TILE_WIDTH) << l).min(width) as usize;
+                        for &n in &depth.image().row(row)[columns] {
+                            (low, high) = (low.min(n), high.max(n));
+                        }
+                    }
+                    if hi_z.tile(l, x, y) != (low, high) {
+                        return Some((l, x, y));
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    fn scatter(depth: &mut Depth, dice: &mut ChaCha8Rng, rect: PixelRect) {
+        let [mut sink] = depth.sinks::<1>(depth.image().height() as usize);
+        for _ in 0..rect.area().min(2000) {
+            let (x, y) = (dice.random_range(rect.x0..rect.x1), dice.random_range(rect.y0..rect.y1));
+            sink.sample(y as i32, x as i32, dice.random_range(0.0..1.0), Id::default());
+        }
+    }
+
+    #[test]
+    fn tiles_hold_the_extremes_of_their_pixels_at_odd_sizes() {
+        let mut dice = ChaCha8Rng::seed_from_u64(1);
+        for (width, height) in SIZES {
+            let (mut depth, mut hi_z) = (Depth::default(), HiZ::default());
+            depth.reset(width, height, 0.0);
+            hi_z.reset(width, height, 0.0);
+            for simd in [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Avx512] {
+                let (x0, y0) = (dice.random_range(0..width), dice.random_range(0..height));
+                let rect = PixelRect {
+                    x0,
+                    y0,
+                    x1: dice.random_range(x0..width) + 1,
+                    y1: dice.random_range(y0..height) + 1,
+                };
+                for rect in [rect, PixelRect { x0: width - 1, y0: height - 1, x1: width, y1: height }] {
+                    scatter(&mut depth, &mut dice, rect);
+                    hi_z.touch(&rect);
+                    hi_z.refresh(simd, &depth);
+                    assert_eq!(wrong_tile(&hi_z, &depth), None, "{width}×{height}");
+                }
+            }
+            let top = hi_z.levels.last().expect("a level");
+            assert_eq!((top.width, top.height), (1, 1));
+        }
+    }
+
+    #[test]
+    fn a_tile_that_was_not_refreshed_is_found() {
+        let mut dice = ChaCha8Rng::seed_from_u64(2);
+        let (mut depth, mut hi_z) = (Depth::default(), HiZ::default());
+        depth.reset(100, 60, 0.0);
+        hi_z.reset(100, 60, 0.0);
+        scatter(&mut depth, &mut dice, PixelRect { x0: 90, y0: 50, x1: 100, y1: 60 });
+        hi_z.refresh(SimdLevel::Scalar, &depth);
+        assert!(wrong_tile(&hi_z, &depth).is_some());
+    }
+
+    #[test]
+    fn a_rectangle_meets_at_most_four_tiles_of_the_level_found() {
+        let mut dice = ChaCha8Rng::seed_from_u64(3);
+        for (width, height) in SIZES {
+            let mut hi_z = HiZ::default();
+            hi_z.reset(width, height, 0.0);
+            for _ in 0..200 {
+                let (x0, y0) = (dice.random_range(0..width), dice.random_range(0..height));
+                let (x1, y1) = (dice.random_range(x0..width) + 1, dice.random_range(y0..height) + 1);
+                let (level, first, last) = hi_z.cover(&PixelRect { x0, y0, x1, y1 });
+                assert!(last[0] - first[0] <= 1 && last[1] - first[1] <= 1);
+                let (w, h) = (TILE_WIDTH << level, TILE_HEIGHT << level);
+                assert!(first[0] * w <= x0 && x1 <= (last[0] + 1) * w);
+                assert!(first[1] * h <= y0 && y1 <= (last[1] + 1) * h);
+                assert!((last[0] as usize) < hi_z.levels[level].width);
+                assert!((last[1] as usize) < hi_z.levels[level].height);
+            }
         }
     }
 }

@@ -75,7 +75,7 @@ impl Corners {
     /// plane w = 0 to tell.
     fn extent(&self, screen: &Screen) -> Option<(PixelRect, f32)> {
         let w = self.clip.iter().fold(f64::INFINITY, |least, c| least.min(c.w)) - self.error.w;
-        if !(w > 4.0 * self.error.w) {
+        if w.is_nan() || w <= 4.0 * self.error.w {
             return None;
         }
         let ndc = self.clip.map(|c| DVec3::new(c.x, c.y, f64::from(screen.sign) * c.z) / c.w);

@@ -5,7 +5,7 @@
 //! | `pass` | what the app's closure records |
 //! | `instance` | a draw call against the view |
 //! | `vertex`, `clip` | object space to snapped screen coordinates |
-//! | `bin`, `raster` | triangles to samples |
+//! | `bin`, `setup`, `raster` | triangles to samples |
 //! | `waves` | who does what, in which order, on which thread |
 //! | `depth`, `hi_z` | what is kept |
 //! | `count` | answers to questions |
@@ -20,6 +20,7 @@ mod hi_z;
 mod instance;
 mod pass;
 mod raster;
+mod setup;
 mod simd;
 mod vertex;
 mod visibility;

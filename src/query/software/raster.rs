@@ -3,24 +3,32 @@
 //! Coverage is decided by edge functions in integers: a sample (a pixel's centre) is covered where
 //! all three are positive, or zero on a top or left edge. A triangle of at most
 //! [`SMALL_EXTENT`] subpixels a side is rasterised in i32: an edge function inside the bounding
-//! box is at most its area, 2³⁰, and a block of lanes reaches less than 2²⁷ beyond. Others take f64,
-//! where every value is an integer below 2⁴⁸ and therefore exact.
-//!
-//! Depth is interpolated from the edge functions, rounded once to f32:
-//! `n0 + (λ1·(n1 - n0) + λ2·(n2 - n0))`, `λ = edge / area`, clamped to the triangle's own range.
-//! Each λ lies in [0, 1] and errs by less than 2 ulps, each difference and product by half an ulp
-//! of at most the largest |nearness|, so the sum errs by a few ulps of that. All paths share
-//! [`Shading::nearness`]; the same triangle yields the same bits in each of them.
+//! box is at most its area, 2³⁰, and a block of lanes reaches less than 2²⁷ beyond. Others take
+//! f64, where every value is an integer below 2⁴⁸ and therefore exact. How depth is interpolated
+//! is told in `setup`.
+#![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
 
 use super::bin::Chunk;
-use super::vertex::{SUBPIXEL_BITS, SUBPIXELS, Vertex};
+use super::setup::{SMALL_EXTENT, Shading, Small, bias, centre, first_sample, last_sample};
+use super::vertex::{SUBPIXELS, Vertex};
 
 /// Samples that are worked on together.
 pub(crate) const LANES: usize = 16;
-/// The longest side of a triangle's bounding box, in subpixels, that the i32 paths take.
-pub(crate) const SMALL_EXTENT: i32 = 128 << SUBPIXEL_BITS;
 /// The most sample columns or rows of a triangle that is rasterised among others, a lane each.
 pub(crate) const TINY_SIDE: i32 = 4;
+
+/// A bit for each lane.
+pub(crate) const ALL_LANES: u32 = (1 << LANES) - 1;
+
+/// A bit for each lane with a negative value.
+#[inline(always)]
+pub(crate) fn negative(values: &[i32; LANES]) -> u32 {
+    let mut bits = 0;
+    for (i, &value) in values.iter().enumerate() {
+        bits |= (value >> 31) & (1 << i);
+    }
+    bits as u32
+}
 
 /// Where samples go. The rows of a sink are those of one band.
 pub(crate) trait Sink {
@@ -94,32 +102,6 @@ impl TinyBatch {
     };
 }
 
-/// The first sample column (or row) at or after a coordinate in subpixels.
-#[inline(always)]
-pub(crate) fn first_sample(v: i32) -> i32 {
-    v.wrapping_add(SUBPIXELS / 2 - 1) >> SUBPIXEL_BITS
-}
-
-/// The last sample column (or row) at or before a coordinate in subpixels.
-#[inline(always)]
-pub(crate) fn last_sample(v: i32) -> i32 {
-    v.wrapping_sub(SUBPIXELS / 2) >> SUBPIXEL_BITS
-}
-
-/// A sample's coordinate in subpixels.
-#[inline(always)]
-fn centre(sample: i32) -> i32 {
-    (sample << SUBPIXEL_BITS) + SUBPIXELS / 2
-}
-
-/// What an edge function is lowered by so that `≥ 0` means covered: nothing for a top or left
-/// edge, one for the others. `dx`, `dy` run along the edge of a triangle of positive area, which
-/// is clockwise with y down: a top edge runs right, a left edge up.
-#[inline(always)]
-fn bias(dx: i32, dy: i32) -> i32 {
-    if dy < 0 || (dy == 0 && dx > 0) { 0 } else { -1 }
-}
-
 /// Rasterises what chunks of triangles left for one band.
 #[inline(always)]
 pub(crate) fn band<S: Sink>(chunks: &[Chunk], band: usize, sink: &mut S) {
@@ -132,102 +114,6 @@ pub(crate) fn band<S: Sink>(chunks: &[Chunk], band: usize, sink: &mut S) {
             single(triangle, sink);
         }
     }
-}
-
-/// A triangle of at most [`SMALL_EXTENT`] a side, wound clockwise, ready to be sampled.
-#[derive(Clone, Copy)]
-struct Small {
-    /// The edge function opposite to each corner, at the first sample.
-    edge: [i32; 3],
-    /// Its change from column to column.
-    step_x: [i32; 3],
-    /// Its change from row to row.
-    step_y: [i32; 3],
-    /// See [`bias`].
-    bias: [i32; 3],
-    /// Nearness at the corners.
-    nearness: [f32; 3],
-    /// Twice the area, in square subpixels; what the edge functions add up to.
-    area: i32,
-}
-
-impl Small {
-    /// Sets up for the sample in a column and row. Nothing overflows for a triangle of
-    /// [`SMALL_EXTENT`] whose bounding box holds the sample; anything else yields nonsense, which
-    /// lanes without a triangle may.
-    #[inline(always)]
-    fn new(x: [i32; 3], y: [i32; 3], n: [f32; 3], column: i32, row: i32) -> Self {
-        let area = cross(x[1] - x[0], y[1] - y[0], x[2] - x[0], y[2] - y[0]);
-        let turned = area < 0;
-        let (x1, x2) = if turned { (x[2], x[1]) } else { (x[1], x[2]) };
-        let (y1, y2) = if turned { (y[2], y[1]) } else { (y[1], y[2]) };
-        let (n1, n2) = if turned { (n[2], n[1]) } else { (n[1], n[2]) };
-        let (sx, sy) = (centre(column), centre(row));
-        let dx = [x2 - x1, x[0] - x2, x1 - x[0]];
-        let dy = [y2 - y1, y[0] - y2, y1 - y[0]];
-        Self {
-            edge: [
-                cross(dx[0], dy[0], sx - x1, sy - y1),
-                cross(dx[1], dy[1], sx - x2, sy - y2),
-                cross(dx[2], dy[2], sx - x[0], sy - y[0]),
-            ],
-            step_x: dy.map(|d| -(d << SUBPIXEL_BITS)),
-            step_y: dx.map(|d| d << SUBPIXEL_BITS),
-            bias: [bias(dx[0], dy[0]), bias(dx[1], dy[1]), bias(dx[2], dy[2])],
-            nearness: [n[0], n1, n2],
-            area: area.wrapping_abs(),
-        }
-    }
-}
-
-#[inline(always)]
-fn cross(ax: i32, ay: i32, bx: i32, by: i32) -> i32 {
-    ax.wrapping_mul(by).wrapping_sub(ay.wrapping_mul(bx))
-}
-
-/// The part of depth interpolation that is constant over a triangle.
-#[derive(Clone, Copy)]
-struct Shading {
-    inverse_area: f32,
-    base: f32,
-    along_1: f32,
-    along_2: f32,
-    least: f32,
-    greatest: f32,
-}
-
-impl Shading {
-    #[inline(always)]
-    fn new(n: [f32; 3], area: f32) -> Self {
-        Self {
-            inverse_area: 1.0 / area,
-            base: n[0],
-            along_1: n[1] - n[0],
-            along_2: n[2] - n[0],
-            least: least(least(n[0], n[1]), n[2]),
-            greatest: greatest(greatest(n[0], n[1]), n[2]),
-        }
-    }
-
-    /// The nearness where the edge functions opposite to corners 1 and 2 have these values.
-    #[inline(always)]
-    fn nearness(&self, edge_1: f32, edge_2: f32) -> f32 {
-        let l1 = edge_1 * self.inverse_area;
-        let l2 = edge_2 * self.inverse_area;
-        let n = self.base + (l1 * self.along_1 + l2 * self.along_2);
-        least(greatest(n, self.least), self.greatest)
-    }
-}
-
-// One instruction each, unlike `f32::min` and `max`, which care for NaN.
-#[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn greatest(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// Rasterises the first `count` triangles of a batch, each of at most [`TINY_SIDE`] sample columns
@@ -296,10 +182,7 @@ pub(crate) fn tiny<S: Sink>(batch: &TinyBatch, count: usize, sink: &mut S) {
                 };
                 nearness[i] = shading.nearness(e[1] as f32, e[2] as f32);
             }
-            let mut covered = 0_u32;
-            for (i, &outside) in outside.iter().enumerate() {
-                covered |= u32::from(outside >= 0) << i;
-            }
+            let mut covered = negative(&outside) ^ ALL_LANES;
             while covered != 0 {
                 let i = covered.trailing_zeros() as usize;
                 covered &= covered - 1;
@@ -358,7 +241,6 @@ fn small<S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
             let mut outside = [0_i32; LANES];
             let mut nearness = [0.0_f32; LANES];
             let left = area.last_column - column;
-            let mut all = -1_i32;
             for i in 0..LANES {
                 let e = [
                     edge[0].wrapping_add(ramp[0][i]),
@@ -370,11 +252,8 @@ fn small<S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
                     | e[2].wrapping_add(setup.bias[2])
                     | (left - i as i32);
                 nearness[i] = shading.nearness(e[1] as f32, e[2] as f32);
-                all &= outside[i];
             }
-            if all >= 0 {
-                sink.block(row, column, &outside, &nearness, t.id);
-            }
+            sink.block(row, column, &outside, &nearness, t.id);
             for k in 0..3 {
                 edge[k] = edge[k].wrapping_add(setup.step_x[k].wrapping_mul(LANES as i32));
             }

@@ -73,11 +73,12 @@ impl Screen {
 
     /// A clip-space point on the screen.
     #[inline(always)]
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "a comparison with NaN must set the bit")]
     pub(crate) fn project(&self, x: f32, y: f32, z: f32, w: f32) -> Vertex {
         let inverse = 1.0 / w;
         let sx = x * inverse * self.scale_x;
         let sy = y * inverse * self.scale_y;
-        // Written so that NaN sets the bit. 0 ≤ z ≤ w leaves w = 0 only with z = 0: then the
+        // 0 ≤ z ≤ w leaves w = 0 only with z = 0: then the
         // position is infinite or NaN and the guard bit is set.
         let code = u32::from(!(w - z >= 0.0)) * CODE_W_MINUS_Z
             + u32::from(!(z >= 0.0)) * CODE_Z

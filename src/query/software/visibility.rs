@@ -5,7 +5,7 @@
 use super::SoftwareQueries;
 use super::instance::Footprint;
 use super::pass::DrawCall;
-use super::raster::{Id, LANES, Rows, Sink};
+use super::raster::{ALL_LANES, Id, LANES, Rows, Sink, negative};
 use super::vertex::Screen;
 use super::waves::{self, MOST_BANDS};
 use crate::geom::View;
@@ -126,10 +126,11 @@ impl Sink for VisibilitySink<'_> {
 
     #[inline(always)]
     fn block(&mut self, row: i32, column: i32, outside: &[i32; LANES], nearness: &[f32; LANES], id: Id) {
-        for i in 0..LANES {
-            if outside[i] >= 0 {
-                self.sample(row, column + i as i32, nearness[i], id);
-            }
+        let mut covered = negative(outside) ^ ALL_LANES;
+        while covered != 0 {
+            let i = covered.trailing_zeros();
+            covered &= covered - 1;
+            self.sample(row, column + i as i32, nearness[i as usize], id);
         }
     }
 

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
+use super::super::CameraPath;
 use super::super::shape::turn;
-use super::super::{CameraPath, Placed};
 use super::plan::Size;
 use super::{BAY, STOREY};
 use crate::geom::Aabb;
@@ -84,7 +84,7 @@ impl Clearance {
         Self((0..PIECES).map(piece).collect())
     }
 
-    pub(super) fn allows(&self, object: &Placed) -> bool {
-        !self.0.iter().any(|tube| tube.intersects(&object.bounds))
+    pub(super) fn allows(&self, bounds: &Aabb) -> bool {
+        !self.0.iter().any(|tube| tube.intersects(bounds))
     }
 }

@@ -70,7 +70,8 @@ impl Corner<'_> {
         };
         self.add(riser, [x, 0.5 * CLEAR, z], Turn::Upright, color);
         if self.dice.chance(0.7) {
-            self.add(valve, [x, 1.3, z], Turn::Upright, RED);
+            // The wheel points into the room.
+            self.add(valve, [x, 1.3, z], if x < 0.0 { Turn::UprightEast } else { Turn::Upright }, RED);
         }
     }
 
@@ -80,12 +81,13 @@ impl Corner<'_> {
 
     fn corridor(&mut self) {
         self.lamps();
-        for z in [-3.3, 3.3] {
-            match self.dice.below(6) {
-                0 => self.riser(self.floor.x.signum() * 2.8, z),
-                1 => self.add(Part::Cabinet, [2.5, 0.0, z], Turn::Yaw(if z < 0.0 { 0 } else { 2 }), CABINET),
-                2 => self.add(Part::Gauge, [-2.6, 0.0, z], Turn::Yaw(0), WHITE),
-                3 => self.sized(Part::Barrel, [2.9, 0.0, z], BLUE, 0.8),
+        for (x, z) in [(-2.9, -3.2), (2.9, -3.2), (-2.9, 3.2), (2.9, 3.2), (-2.0, -3.3), (2.0, 3.3)] {
+            match self.dice.below(8) {
+                0 | 1 => self.riser(x, z),
+                2 => self.add(Part::Cabinet, [x, 0.0, z], Turn::Yaw(if z < 0.0 { 0 } else { 2 }), CABINET),
+                3 => self.add(Part::Gauge, [x, 0.0, z], Turn::Yaw(0), WHITE),
+                4 => self.sized(Part::Barrel, [x, 0.0, z], BLUE, 0.8),
+                5 => self.sized(Part::Crate, [x, 0.0, z], WOOD, 0.6),
                 _ => {}
             }
         }
@@ -93,10 +95,7 @@ impl Corner<'_> {
 
     fn hall(&mut self, bay: Bay) {
         if bay.k > 0 {
-            if bay.k == 2 && bay.i % 4 == 1 {
-                self.add(Part::Crane, [0.0, 2.0, 0.0], Turn::Yaw(0), YELLOW);
-            }
-            return;
+            return self.gallery(bay);
         }
         match (bay.i + bay.j) % 3 {
             0 => self.add(Part::Turbine, [0.0, 0.0, -1.6], Turn::Yaw(0), MACHINE),
@@ -115,6 +114,27 @@ impl Corner<'_> {
         self.sized(Part::Gauge, [3.2, 0.0, 2.2], WHITE, 0.8);
     }
 
+    /// A walkway along one side of the hall, pipes along the other, and the crane.
+    fn gallery(&mut self, bay: Bay) {
+        let quarter = 0.25 * BAY;
+        if bay.j == 0 {
+            for x in [-quarter, quarter] {
+                self.add(Part::Grating, [x, 0.0, -quarter], Turn::Yaw(0), GALVANISED);
+                self.add(Part::Railing, [x, 0.0, 0.0], Turn::Yaw(0), YELLOW);
+            }
+            self.riser(-2.0, -3.3);
+            self.add(Part::Pump, [0.0, 0.0, -2.2], Turn::Yaw(0), ORANGE);
+        }
+        for (side, z) in [-3.2, 3.2].into_iter().enumerate() {
+            let color = PIPES[(2 * (bay.k + bay.j) as usize + side) % PIPES.len()];
+            self.add(Part::PipeMedium, [0.0, 2.2, z], Turn::Yaw(0), color);
+        }
+        self.add(Part::Lamp, [0.0, CLEAR, 0.0], Turn::Yaw(0), WHITE);
+        if bay.k == 2 && bay.i % 4 == 1 {
+            self.add(Part::Crane, [0.0, 2.0, 0.0], Turn::Yaw(0), YELLOW);
+        }
+    }
+
     /// Water walls around the boiler house, platforms and stairs between them.
     fn boiler(&mut self, plan: &Plan, bay: Bay) {
         let beside = [(1, 0, 1), (-1, 0, 1), (0, 1, 0), (0, -1, 0)];
@@ -126,7 +146,9 @@ impl Corner<'_> {
             }
         }
         let half = 0.25 * BAY;
-        for (x, z) in [(-half, -half), (half, -half), (-half, half), (half, half)] {
+        // On the ground there is a floor already.
+        let platforms = [(-half, -half), (half, -half), (-half, half), (half, half)];
+        for (x, z) in platforms.into_iter().filter(|_| bay.k > 0) {
             self.add(Part::Grating, [x, 0.0, z], Turn::Yaw(0), GALVANISED);
         }
         self.add(Part::Railing, [half, 0.0, 0.3], Turn::Yaw(0), YELLOW);
@@ -169,7 +191,8 @@ impl Corner<'_> {
             self.add(Part::Pump, [x, 0.0, -1.8], Turn::Yaw(1), color);
             let pipe = self.paint();
             self.add(Part::RiserMedium, [x, 0.5 * CLEAR, -3.2], Turn::Upright, pipe);
-            self.add(Part::ValveMedium, [x, 1.6, -3.2], Turn::Upright, RED);
+            let turn = if x < 0.0 { Turn::UprightEast } else { Turn::Upright };
+            self.add(Part::ValveMedium, [x, 1.6, -3.2], turn, RED);
         }
         self.add(Part::TankLow, [-2.0, 0.0, 2.0], Turn::Yaw(0), WHITE);
         self.add(Part::Pump, [1.6, 0.0, 2.4], Turn::Yaw(0), BLUE);

@@ -8,6 +8,7 @@ mod flight;
 mod furnish;
 mod outdoors;
 mod parts;
+mod pipework;
 mod plan;
 mod rack;
 mod shell;
@@ -107,9 +108,9 @@ impl Site {
 
     /// Places a part, unless it would stand in the camera's way.
     fn put(&mut self, part: Part, at: Affine3A, color: [u8; 3]) {
-        self.build(part, at, color);
-        if !self.model.objects.last().is_some_and(|o| self.clearance.allows(o)) {
-            self.model.objects.pop();
+        let bounds = self.model.meshes[part as usize].bounds().transformed(&at);
+        if self.clearance.allows(&bounds) {
+            self.build(part, at, color);
         }
     }
 }
@@ -119,8 +120,10 @@ impl Site {
 enum Turn {
     /// Quarter turns about y: its x axis along x, −z, −x, z.
     Yaw(usize),
-    /// Its x axis along y: lying things upright.
+    /// Its x axis along y: lying things upright, their tops toward −x.
     Upright,
+    /// The same, tops toward +x.
+    UprightEast,
 }
 
 /// A transform without a product of matrices: quarter turns are exact.
@@ -136,6 +139,7 @@ fn at(position: Vec3, turn: Turn, scale: f32) -> Affine3A {
             (x, Vec3::Y, z)
         }
         Turn::Upright => (Vec3::Y, Vec3::NEG_X, Vec3::Z),
+        Turn::UprightEast => (Vec3::Y, Vec3::X, Vec3::NEG_Z),
     };
     affine([x * scale, y * scale, z * scale], position)
 }

@@ -1,83 +1,17 @@
-//! The machines, pipes and fittings of the plant: shared meshes with levels of detail.
+//! The machines and furniture of the plant: shared meshes with levels of detail.
 //!
 //! Each mesh stands on the floor of its own space (y from 0 up) or, if it is long, runs along x
 //! about the origin. Metres.
 
 use glam::Vec3;
 
-use super::super::shape::{Coarseness, Shape, Stand, mesh, sagitta};
+use super::super::shape::{Coarseness, Shape, Stand, mesh, sagitta, turn};
 use super::BAY;
 use crate::scene::mesh::Mesh;
 
-const fn v(x: f32, y: f32, z: f32) -> Vec3 {
+/// Short for [`Vec3::new`], as there are hundreds.
+pub(super) const fn v(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
-}
-
-/// A pipe along x about the origin, flanged at both ends and in the middle.
-pub(super) fn pipe(name: &str, radius: f32, long: f32) -> Mesh {
-    mesh(name, 4, |s, c| {
-        let start = v(-0.5 * long, 0.0, 0.0);
-        s.cylinder(Stand::x(start), radius, long, c.segments(32));
-        for x in [0.0, 0.5 * long - 0.06, long - 0.12] {
-            flange(s, c, start + Vec3::X * x, radius, 0.12);
-        }
-    })
-}
-
-/// A bolted collar around a pipe along x.
-fn flange(s: &mut Shape, c: Coarseness, at: Vec3, pipe: f32, thick: f32) {
-    let radius = pipe * 1.35 + 0.03;
-    s.cylinder(Stand::x(at), radius, thick, c.segments(32));
-    let bolt = 0.08 * radius;
-    if c.finer_than(2) {
-        for k in 0..12 {
-            let (cos, sin) = super::super::shape::turn(k, 12);
-            let center = at + v(-bolt, cos * (radius - 1.3 * bolt), sin * (radius - 1.3 * bolt));
-            s.cylinder(Stand::x(center), bolt, thick + 2.0 * bolt, c.segments(8));
-        }
-    } else {
-        s.off_by(bolt);
-    }
-}
-
-/// A quarter bend: enters along +x, leaves along +z, about the corner of its bay.
-pub(super) fn elbow(name: &str, radius: f32) -> Mesh {
-    mesh(name, 4, |s, c| {
-        let turn = 3.0 * radius;
-        s.bend(v(0.0, 0.0, turn), turn, radius, [c.segments(16), c.segments(32)]);
-        flange(s, c, v(-0.12, 0.0, 0.0), radius, 0.12);
-    })
-}
-
-/// A gate valve on a pipe along x, with bonnet, stem and hand wheel.
-pub(super) fn valve(name: &str, pipe: f32) -> Mesh {
-    mesh(name, 4, |s, c| {
-        let long = 3.2 * pipe;
-        flange(s, c, v(-long, 0.0, 0.0), pipe, 0.4 * pipe);
-        flange(s, c, v(long - 0.4 * pipe, 0.0, 0.0), pipe, 0.4 * pipe);
-        s.cylinder(Stand::x(v(-long, 0.0, 0.0)), 1.05 * pipe, 2.0 * long, c.segments(32));
-        s.vessel(Stand::y(v(0.0, -1.6 * pipe, 0.0)), 1.5 * pipe, 3.2 * pipe, c.segments(24));
-        s.cylinder(Stand::y(v(0.0, 1.5 * pipe, 0.0)), 0.8 * pipe, 1.8 * pipe, c.segments(24));
-        s.cylinder(Stand::y(v(0.0, 3.2 * pipe, 0.0)), 0.2 * pipe, 2.2 * pipe, c.segments(12));
-        hand_wheel(s, c, v(0.0, 5.0 * pipe, 0.0), 1.8 * pipe);
-    })
-}
-
-fn hand_wheel(s: &mut Shape, c: Coarseness, at: Vec3, radius: f32) {
-    s.torus(Stand::y(at), radius, 0.09 * radius, [c.segments(32), c.segments(12)]);
-    let spoke = 0.06 * radius;
-    s.cuboid(at - v(radius, spoke, spoke), at + v(radius, spoke, spoke));
-    s.cuboid(at - v(spoke, spoke, radius), at + v(spoke, spoke, radius));
-}
-
-/// A small instrument on a stalk.
-pub(super) fn gauge() -> Mesh {
-    mesh("gauge", 3, |s, c| {
-        s.cylinder(Stand::y(v(0.0, 0.0, 0.0)), 0.03, 1.1, c.segments(12));
-        s.cylinder(Stand::z(v(0.0, 1.25, -0.06)), 0.18, 0.12, c.segments(32));
-        s.torus(Stand::z(v(0.0, 1.25, 0.06)), 0.17, 0.02, [c.segments(32), c.segments(8)]);
-        s.cuboid(v(-0.12, 0.0, -0.12), v(0.12, 0.04, 0.12));
-    })
 }
 
 /// A heat exchanger's bundle: a grid of bare tubes along x between tube sheets, on saddles.
@@ -136,7 +70,7 @@ pub(super) fn tank(name: &str, radius: f32, high: f32) -> Mesh {
             c.segments(64),
         );
         for k in 0..3 {
-            let (cos, sin) = super::super::shape::turn(k, 3);
+            let (cos, sin) = turn(k, 3);
             s.cylinder(
                 Stand::y(v(0.8 * radius * cos, 0.0, 0.8 * radius * sin)),
                 0.08,
@@ -365,7 +299,8 @@ pub(super) fn crate_of_boards() -> Mesh {
                 s.cuboid(v(0.44, y, -0.439), v(0.5, y + 0.17, 0.439));
             }
         } else {
-            s.off_by(0.06);
+            // From an outer corner to the box within.
+            s.off_by(0.08);
         }
     })
 }
@@ -444,7 +379,7 @@ pub(super) fn tower_patch(ring: usize) -> Mesh {
         let y0 = 4.0 + ring as f32 * TOWER_RING_HEIGHT;
         let point = |i: usize, j: usize, inner: f32| {
             let y = y0 + j as f32 * TOWER_RING_HEIGHT / high as f32;
-            let (cos, sin) = super::super::shape::turn(i, wide * TOWER_PATCHES);
+            let (cos, sin) = turn(i, wide * TOWER_PATCHES);
             let r = radius(y) - inner;
             v(r * cos, y, r * sin)
         };

@@ -92,7 +92,9 @@ impl Size {
 
     fn holds(&self, bay: Bay) -> bool {
         let within = |n: i32, size: usize| (0..size as i32).contains(&n);
-        within(bay.i, self.nx) && within(bay.j, self.nz) && within(bay.k, self.ny)
+        // The western wing is lower by a third.
+        let high = if bay.i < self.nx as i32 / 4 { self.ny - self.ny / 3 } else { self.ny };
+        within(bay.i, self.nx) && within(bay.j, self.nz) && within(bay.k, high)
     }
 
     fn in_hall(&self, bay: Bay) -> bool {
@@ -167,14 +169,15 @@ impl Plan {
         let joined = route.windows(2).map(|w| [w[0], w[1]]).collect();
         let mut plan = Self { size, rooms: vec![OUTSIDE; size.nx * size.nz * size.ny], joined };
         let mut number = BOILER.number;
+        let mut uses = Vec::new();
         for k in 0..size.ny as i32 {
             for (first, last) in plan.bands() {
                 let mut i = 0;
                 while i < size.nx as i32 {
                     let corridor = first == size.aisle();
-                    let wide = if corridor { 4 } else { 1 + dice.below(3) as i32 };
+                    let wide = if corridor { 8 } else { 2 + dice.below(3) as i32 };
                     number += 1;
-                    let used = if corridor { Use::Corridor } else { any_use(dice) };
+                    let used = if corridor { Use::Corridor } else { deal(&mut uses, dice) };
                     plan.fill(Room { number, used }, [i, first, k], [i + wide, last + 1]);
                     i += wide;
                 }
@@ -206,15 +209,16 @@ impl Plan {
         for j in j0..j1 {
             for i in i0..i1.min(self.size.nx as i32) {
                 let bay = Bay { i, j, k };
-                let special = if self.size.in_hall(bay) {
-                    Some(HALL)
-                } else if self.size.in_boiler(bay) {
-                    Some(BOILER)
-                } else {
-                    None
-                };
                 let index = self.index(bay);
-                self.rooms[index] = special.unwrap_or(room);
+                self.rooms[index] = if !self.size.holds(bay) {
+                    OUTSIDE
+                } else if self.size.in_hall(bay) {
+                    HALL
+                } else if self.size.in_boiler(bay) {
+                    BOILER
+                } else {
+                    room
+                };
             }
         }
     }
@@ -235,7 +239,7 @@ impl Plan {
         entering || self.joined.contains(&[a, b]) || self.joined.contains(&[b, a])
     }
 
-    /// All bays of the building, storey by storey.
+    /// All bays of the building's box, storey by storey; those above a lower wing are outside.
     pub(super) fn bays(&self) -> impl Iterator<Item = Bay> + use<> {
         let Size { nx, nz, ny } = self.size;
         (0..ny * nz * nx).map(move |n| Bay {
@@ -246,13 +250,19 @@ impl Plan {
     }
 }
 
-fn any_use(dice: &mut Dice) -> Use {
-    match dice.below(20) {
-        0..7 => Use::Exchangers,
-        7..11 => Use::Pumps,
-        11..14 => Use::Vessels,
-        14..16 => Use::Electrical,
-        16..18 => Use::Store,
-        _ => Use::Air,
+/// The next use of a room, dealt from a shuffled pack: every seed has the same share of each.
+fn deal(pack: &mut Vec<Use>, dice: &mut Dice) -> Use {
+    if pack.is_empty() {
+        const SHARES: [(Use, usize); 6] = [
+            (Use::Exchangers, 6),
+            (Use::Pumps, 4),
+            (Use::Vessels, 3),
+            (Use::Electrical, 3),
+            (Use::Store, 2),
+            (Use::Air, 2),
+        ];
+        pack.extend(SHARES.iter().flat_map(|&(used, share)| std::iter::repeat_n(used, share)));
+        dice.shuffle(pack);
     }
+    pack.pop().unwrap_or(Use::Store)
 }

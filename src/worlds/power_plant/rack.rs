@@ -40,7 +40,7 @@ fn run(site: &mut Site, plan: &Plan, dice: &mut Dice, [j, k]: [i32; 2], lane: Ve
     for i in first..last.min(nx as i32) {
         let bay = Bay { i, j, k };
         // In the high rooms pipes would hang in the air.
-        if matches!(plan.room(bay).used, Use::Hall | Use::Boiler) {
+        if matches!(plan.room(bay).used, Use::Hall | Use::Boiler | Use::Outside) {
             continue;
         }
         let middle = plan.size.center(bay) + lane;

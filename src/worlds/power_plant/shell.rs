@@ -18,15 +18,14 @@ pub(super) fn build(site: &mut Site, plan: &Plan, dice: &mut Dice) {
 /// A slab under every bay and over the top storey, except inside the hall and the boiler house.
 fn floors(site: &mut Site, plan: &Plan, dice: &mut Dice) {
     let top = plan.size.ny as i32;
-    for bay in plan.bays() {
-        let below = Bay { k: bay.k - 1, ..bay };
-        if plan.room(bay) != plan.room(below) {
-            site.build(Part::Slab, at(plan.size.center(bay), Turn::Yaw(0), 1.0), aged(FLOOR, dice));
-        }
+    let roof = plan.bays().filter(|bay| bay.k == top - 1).map(|bay| Bay { k: top, ..bay });
+    for bay in plan.bays().chain(roof) {
+        let (room, below) = (plan.room(bay), plan.room(Bay { k: bay.k - 1, ..bay }));
+        let sky = room.used == Use::Outside;
         // The boiler house is open to the sky.
-        let roof = Bay { k: top, ..bay };
-        if bay.k == top - 1 && plan.room(bay).used != Use::Boiler {
-            site.build(Part::Slab, at(plan.size.center(roof), Turn::Yaw(0), 1.0), aged(CONCRETE, dice));
+        if room != below && !(sky && below.used == Use::Boiler) {
+            let color = if sky { CONCRETE } else { FLOOR };
+            site.build(Part::Slab, at(plan.size.center(bay), Turn::Yaw(0), 1.0), aged(color, dice));
         }
     }
 }
@@ -58,14 +57,21 @@ fn wall(site: &mut Site, plan: &Plan, dice: &mut Dice, sides: [Bay; 2], middle: 
         return;
     }
     let outer = rooms.iter().any(|r| r.used == Use::Outside);
-    let corridors = rooms.iter().all(|r| r.used == Use::Corridor);
-    let door = plan.is_joined(sides[0], sides[1]) || corridors || (!outer && dice.chance(0.16));
-    let part = if door {
-        Part::WallDoor
-    } else if outer && sides[0].k > 0 && dice.chance(0.4) {
-        Part::WallWindows
+    let way = plan.is_joined(sides[0], sides[1]) || rooms.iter().all(|r| r.used == Use::Corridor);
+    let part = if outer {
+        match (way, sides[0].k > 0 && dice.chance(0.4)) {
+            (true, _) => Part::WallDoor,
+            (false, true) => Part::WallWindows,
+            (false, false) => Part::Wall,
+        }
     } else {
-        Part::Wall
+        // Out of 20: where the camera passes there is always an opening.
+        match dice.below(if way { 10 } else { 20 }) {
+            0..6 => Part::WallGate,
+            6..10 => Part::WallDoor,
+            10..13 => Part::WallWindows,
+            _ => Part::Wall,
+        }
     };
     let color = aged(if outer { FACADE } else { PLASTER }, dice);
     site.build(part, at(middle, turn, 1.0), color);
@@ -81,7 +87,8 @@ fn frame(site: &mut Site, plan: &Plan, dice: &mut Dice) {
                 let corner = plan.size.corner(i, j, k);
                 let [west, north] = [Bay { i: i - 1, ..bay }, Bay { j: j - 1, ..bay }];
                 let around = [bay, west, north, Bay { i: i - 1, j: j - 1, k }];
-                if around.iter().any(|b| !is_open(plan, *b)) {
+                let same = around.iter().all(|&b| plan.room(b) == plan.room(bay));
+                if !(same && is_void(plan, bay)) {
                     site.build(Part::Column, at(corner, Turn::Yaw(0), 1.0), aged(CONCRETE, dice));
                 }
                 let ceiling = corner + Vec3::Y * CLEAR;
@@ -98,14 +105,14 @@ fn frame(site: &mut Site, plan: &Plan, dice: &mut Dice) {
     }
 }
 
-/// Whether a bay belongs to a room that is higher than a storey.
-fn is_open(plan: &Plan, bay: Bay) -> bool {
-    matches!(plan.room(bay).used, Use::Hall | Use::Boiler)
+/// Whether a bay belongs to a room that is higher than a storey, or lies outside.
+fn is_void(plan: &Plan, bay: Bay) -> bool {
+    matches!(plan.room(bay).used, Use::Hall | Use::Boiler | Use::Outside)
 }
 
-/// Between two bays of one high room no beam crosses the void, unless it carries the ceiling.
+/// No beam crosses the void inside a high room, unless it carries the ceiling.
 fn needs_beam(plan: &Plan, a: Bay, b: Bay) -> bool {
     let above = Bay { k: a.k + 1, ..a };
-    let inner = is_open(plan, a) && plan.room(a) == plan.room(b);
+    let inner = is_void(plan, a) && plan.room(a) == plan.room(b);
     !inner || (plan.room(above) != plan.room(a) && plan.room(a).used == Use::Hall)
 }

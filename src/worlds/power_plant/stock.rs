@@ -1,7 +1,7 @@
 //! The list of parts, and the paint.
 
 use super::super::dice::Dice;
-use super::{BAY, CLEAR, parts, structure};
+use super::{BAY, CLEAR, parts, pipework, structure};
 use crate::scene::mesh::Mesh;
 
 /// Declares the parts once: the variants, and the list of them in order of their mesh index.
@@ -27,23 +27,24 @@ parts! {
     Ground => structure::ground(),
     Wall => structure::wall(),
     WallDoor => structure::wall_with_door(),
+    WallGate => structure::wall_with_gate(),
     WallWindows => structure::wall_with_windows(),
     Column => structure::column(),
     Beam => structure::beam(),
     Crane => structure::crane(),
-    PipeSmall => parts::pipe("small pipe", 0.1, BAY),
-    PipeMedium => parts::pipe("medium pipe", 0.22, BAY),
-    PipeLarge => parts::pipe("large pipe", 0.45, BAY),
-    RiserSmall => parts::pipe("small riser", 0.1, CLEAR),
-    RiserMedium => parts::pipe("medium riser", 0.22, CLEAR),
-    ElbowMedium => parts::elbow("medium elbow", 0.22),
-    ElbowLarge => parts::elbow("large elbow", 0.45),
-    ValveSmall => parts::valve("small valve", 0.1),
-    ValveMedium => parts::valve("medium valve", 0.22),
-    Gauge => parts::gauge(),
-    BundleLong => parts::bundle("long bundle", [14, 14], 6.0, 0.1),
-    BundleTall => parts::bundle("tall bundle", [24, 10], 4.5, 0.1),
-    BundleShort => parts::bundle("short bundle", [12, 12], 2.6, 0.09),
+    PipeSmall => pipework::pipe("small pipe", 0.1, BAY),
+    PipeMedium => pipework::pipe("medium pipe", 0.22, BAY),
+    PipeLarge => pipework::pipe("large pipe", 0.45, BAY),
+    RiserSmall => pipework::pipe("small riser", 0.1, CLEAR),
+    RiserMedium => pipework::pipe("medium riser", 0.22, CLEAR),
+    ElbowMedium => pipework::elbow("medium elbow", 0.22),
+    ElbowLarge => pipework::elbow("large elbow", 0.45),
+    ValveSmall => pipework::valve("small valve", 0.1),
+    ValveMedium => pipework::valve("medium valve", 0.22),
+    Gauge => pipework::gauge(),
+    BundleLong => parts::bundle("long bundle", [14, 13], 6.0, 0.1),
+    BundleTall => parts::bundle("tall bundle", [20, 10], 4.5, 0.1),
+    BundleShort => parts::bundle("short bundle", [11, 11], 2.6, 0.09),
     WaterWall => parts::water_wall(CLEAR),
     TankLow => parts::tank("low tank", 1.1, 3.0),
     TankHigh => parts::tank("high tank", 0.9, 4.2),

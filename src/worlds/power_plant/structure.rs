@@ -24,11 +24,21 @@ pub(super) fn wall() -> Mesh {
     boxes("wall", &[[-HALF, 0.0, -WALL, HALF, CLEAR, WALL]])
 }
 
-/// A wall with an open doorway and its frame.
+/// A wall with an open doorway; the camera's route passes through its middle.
 pub(super) fn wall_with_door() -> Mesh {
-    let (side, top) = (0.5 * DOOR_WIDTH, DOOR_HEIGHT);
+    wall_with_opening("wall with door", 2.4, 3.0)
+}
+
+/// A wall that is mostly a gate, wide enough for machines.
+pub(super) fn wall_with_gate() -> Mesh {
+    wall_with_opening("wall with gate", 5.6, 3.8)
+}
+
+/// A wall around a framed opening that reaches down to the floor.
+fn wall_with_opening(name: &str, wide: f32, top: f32) -> Mesh {
+    let side = 0.5 * wide;
     boxes(
-        "wall with door",
+        name,
         &[
             [-HALF, 0.0, -WALL, -side, CLEAR, WALL],
             [side, 0.0, -WALL, HALF, CLEAR, WALL],
@@ -88,10 +98,6 @@ pub(super) fn crane() -> Mesh {
         ],
     )
 }
-
-/// The width of a doorway; the camera's route passes through its middle.
-const DOOR_WIDTH: f32 = 2.4;
-const DOOR_HEIGHT: f32 = 3.0;
 
 fn boxes(name: &str, pieces: &[[f32; 6]]) -> Mesh {
     mesh(name, 1, |s: &mut Shape, _| {

@@ -1,0 +1,289 @@
+//! The flags that all examples share, and what they mean for the engine.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use anyhow::bail;
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, FromArgMatches, Parser, ValueEnum};
+use tercet::draw::Detail;
+use tercet::geom::Viewport;
+use tercet::policy::{self, Policy};
+use tercet::tree::TreeConfig;
+
+/// What the command line says.
+#[derive(Clone, Debug, Parser)]
+pub struct Flags {
+    /// The culling algorithm; see the list below
+    #[arg(long, value_name = "NAME", default_value = "dual-query")]
+    pub policy: String,
+
+    /// Set dials of the policy, the tree or the drawing by name; see the lists below
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value, num_args = 1..)]
+    pub dials: Vec<(String, String)>,
+
+    /// What answers the questions; auto takes the best that there is
+    #[arg(long, value_enum, default_value = "auto")]
+    pub backend: Backend,
+
+    /// How many frames the camera's flight is cut into
+    #[arg(long, value_name = "N", default_value = "240", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: u32,
+
+    /// Width and height of the picture, in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    pub size: (u32, u32),
+
+    /// How many objects move about; 0 leaves the rest of the world alone
+    #[arg(long, value_name = "N", default_value = "2500")]
+    pub objects: usize,
+
+    /// How much of the world is built: 1 is the paper's size, 0.1 a tenth of its objects
+    #[arg(long, value_name = "X", default_value = "1", value_parser = scale)]
+    pub scale: f32,
+
+    /// Draw every mesh with all its triangles, however far away it is
+    #[arg(long)]
+    pub full_detail: bool,
+
+    /// What the world is generated from: the same number, the same world
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub seed: u64,
+
+    /// Leave the moving objects still
+    #[arg(long = "static")]
+    pub still: bool,
+
+    /// Open no window. There is none yet: every run is headless
+    #[arg(long)]
+    pub headless: bool,
+
+    /// Compare each frame with the exact visible set, outside the clock: slower, same timings
+    #[arg(long)]
+    pub oracle: bool,
+
+    /// Record the run, to be replayed bit for bit
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+
+    /// Where the figures and pictures go [default: out/ and the example's name]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// The example's name.
+    #[arg(skip)]
+    pub example: &'static str,
+}
+
+/// An example without flags of its own.
+#[derive(Args)]
+pub struct NoMore {}
+
+/// What `--backend` takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The best that there is: for now, software
+    Auto,
+    /// The CPU, on all cores; needs no GPU
+    Software,
+    /// The GPU (not there yet)
+    Wgpu,
+}
+
+impl Flags {
+    /// Reads the command line. Prints help, or what is wrong with a flag, and exits.
+    pub fn parse(example: &'static str, about: &'static str) -> Self {
+        Self::parse_with::<NoMore>(example, about).0
+    }
+
+    /// As [`Flags::parse`], with flags of the example's own.
+    pub fn parse_with<More: Args>(example: &'static str, about: &'static str) -> (Self, More) {
+        let command = Self::command().name(example).about(about).after_long_help(catalogue(example));
+        let command = More::augment_args(command);
+        let matches = command.clone().get_matches();
+        let mut flags = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+        let more = More::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+        flags.example = example;
+        if let Err(error) = flags.check() {
+            command.clone().error(ErrorKind::InvalidValue, error).exit();
+        }
+        (flags, more)
+    }
+
+    /// The policy, its dials set.
+    pub fn policy(&self) -> anyhow::Result<Box<dyn Policy>> {
+        let mut policy = policy::by_name(&self.policy)?;
+        let known = policy.dials();
+        for (key, value) in self.dials.iter().filter(|(key, _)| has(&known, key)) {
+            policy.set(key, value)?;
+        }
+        Ok(policy)
+    }
+
+    /// The tree's dials.
+    pub fn tree(&self) -> anyhow::Result<TreeConfig> {
+        let mut tree = TreeConfig::default();
+        for (key, value) in self.dials.iter().filter(|(key, _)| is_tree_dial(key)) {
+            tree.set(key, value)?;
+        }
+        Ok(tree)
+    }
+
+    /// How finely meshes are drawn.
+    pub fn detail(&self) -> anyhow::Result<Detail> {
+        let mut detail = if self.full_detail { Detail::FULL } else { Detail::default() };
+        for (_, value) in self.dials.iter().filter(|(key, _)| key == MAX_ERROR) {
+            match value.parse() {
+                Ok(pixels) if pixels >= 0.0 => detail.max_error_px = pixels,
+                _ => bail!("cannot set {MAX_ERROR}={value}: it takes a number of pixels, 0 or more"),
+            }
+        }
+        Ok(detail)
+    }
+
+    /// The rectangle that is drawn.
+    pub fn viewport(&self) -> Viewport {
+        Viewport::new(self.size.0, self.size.1)
+    }
+
+    /// The folder that the run writes to.
+    pub fn out(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| PathBuf::from("out").join(self.example))
+    }
+
+    /// Refuses what cannot be done, before a world is built.
+    fn check(&self) -> anyhow::Result<()> {
+        if self.backend == Backend::Wgpu {
+            bail!("--backend wgpu: the GPU backend is not there yet; use software or auto");
+        }
+        if let Some(file) = &self.record {
+            bail!("--record {}: recording is not there yet; run without it", file.display());
+        }
+        let policy = self.policy()?;
+        for (key, value) in &self.dials {
+            if !has(&policy.dials(), key) && !is_tree_dial(key) && key != MAX_ERROR {
+                bail!(
+                    "--set {key}={value}: neither {}, nor the tree, nor the drawing has a dial of that name; \
+                     --help lists them",
+                    self.policy
+                );
+            }
+        }
+        self.tree()?;
+        self.detail()?;
+        Ok(())
+    }
+}
+
+/// The dial of the drawing.
+const MAX_ERROR: &str = "max_error_px";
+
+fn has(dials: &[tercet::Dial], key: &str) -> bool {
+    dials.iter().any(|dial| dial.key == key)
+}
+
+fn is_tree_dial(key: &str) -> bool {
+    key == "preset" || has(&TreeConfig::default().dials(), key)
+}
+
+/// What stands below the flags in `--help`.
+fn catalogue(example: &str) -> String {
+    let run = format!("cargo run --release --example {example}");
+    let mut text = format!(
+        "Examples:\n  \
+         {run}\n      the whole run, with its figures and pictures\n  \
+         {run} -- --frames 60 --oracle\n      check each frame against the exact visible set\n  \
+         {run} -- --policy frustum\n      what the view frustum alone would leave to draw\n  \
+         {run} -- --set preset=paper\n      the tree with the rule and the constants of the 2005 paper\n\n\
+         Policies: {}\n",
+        policy::NAMES.join(", ")
+    );
+    for name in policy::NAMES {
+        let dials = policy::by_name(name).map(|policy| policy.dials()).unwrap_or_default();
+        if !dials.is_empty() {
+            list(&mut text, &format!("Dials of the policy {name}"), &dials);
+        }
+    }
+    list(&mut text, "Dials of the tree", &TreeConfig::default().dials());
+    let _ = writeln!(text, "  {:<24} all of them at once: paper, stable", "preset=stable");
+    let pixels = Detail::default().max_error_px;
+    let _ = writeln!(text, "\nDials of the drawing (--set, with their defaults):");
+    let _ = write!(
+        text,
+        "  {:<24} how far a coarser mesh may lie from the true one, pixels",
+        format!("{MAX_ERROR}={pixels}")
+    );
+    text
+}
+
+fn list(text: &mut String, heading: &str, dials: &[tercet::Dial]) {
+    let _ = writeln!(text, "\n{heading} (--set, with their defaults):");
+    for dial in dials {
+        let _ = writeln!(text, "  {:<24} {}", format!("{}={}", dial.key, dial.value), dial.about);
+    }
+}
+
+fn key_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("write it as KEY=VALUE, for instance o_split=12".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=Viewport::MAX_SIDE).contains(side));
+    text.split_once(['x', 'X', '×'])
+        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
+        .ok_or_else(|| format!("write it as 1280x720, each side 1 to {}", Viewport::MAX_SIDE))
+}
+
+fn scale(text: &str) -> Result<f32, String> {
+    let scale = text.parse().ok().filter(|&scale: &f32| scale > 0.0 && scale <= 16.0);
+    scale.ok_or_else(|| "it takes a number above 0 and up to 16".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flags(line: &str) -> anyhow::Result<Flags> {
+        let flags = Flags::try_parse_from(std::iter::once("example").chain(line.split_whitespace()))?;
+        flags.check()?;
+        Ok(flags)
+    }
+
+    #[test]
+    fn the_command_is_well_formed() {
+        Flags::command().after_long_help(catalogue("example")).debug_assert();
+    }
+
+    #[test]
+    fn dials_reach_the_one_that_has_them() -> anyhow::Result<()> {
+        let flags = flags("--set o_split=7 tight_boxes=never --set max_error_px=2.5")?;
+        assert_eq!(flags.tree()?.o_split, 7);
+        assert_eq!(flags.detail()?.max_error_px, 2.5);
+        Ok(())
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_refused() {
+        for line in [
+            "--backend wgpu",
+            "--record frames.bin",
+            "--policy nonsense",
+            "--set nonsense=1",
+            "--set o_split=many",
+            "--set o_split",
+            "--set max_error_px=-1",
+            "--size 0x720",
+            "--size 1280",
+            "--size 16385x1",
+            "--scale 0",
+            "--frames 0",
+            "--objects -1",
+        ] {
+            assert!(flags(line).is_err(), "{line} was taken");
+        }
+        assert!(flags("--backend software --size 1x16384 --objects 0 --static --oracle").is_ok());
+    }
+}

@@ -1,0 +1,193 @@
+//! A run: counts frames, shows how long it will take, measures, and writes everything at the end.
+//!
+//! Each example has its own loop, so that it reads as the engine is used; what surrounds the loop
+//! is here. None of it happens inside the times that are reported.
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+use hecs::World;
+use indicatif::{ProgressBar, ProgressStyle};
+use tercet::draw::Drawable;
+use tercet::geom::{Frustum, View};
+use tercet::policy::Policy;
+use tercet::query::QueryBackend;
+use tercet::query::software::SoftwareQueries;
+use tercet::scene::{Bounds, Scene, SyncReport};
+use tercet::tree::TreeStats;
+use tercet::{Culler, FrameStats};
+
+use super::flags::Flags;
+use super::painter::Painter;
+use super::reference::Reference;
+use super::report::{self, FrameRecord, Setting, Summary, TreeFigures};
+use super::{last_frame, plots, table, top_view};
+
+/// A culler whose policy was chosen by name.
+pub type Eye = Culler<Box<dyn Policy>>;
+
+/// What was measured so far.
+pub struct Run {
+    flags: Flags,
+    painter: Painter,
+    setting: Setting,
+    bar: ProgressBar,
+    started: Instant,
+    records: Vec<FrameRecord>,
+    reference: Reference,
+    view: Option<View>,
+    /// The tree's counters after the first frame, which builds it.
+    tree_built: TreeStats,
+}
+
+/// One frame, as the example's loop hands it over.
+pub struct Frame<'a> {
+    /// The scene after its adaptation.
+    pub scene: &'a Scene,
+    /// The view that was drawn.
+    pub view: &'a View,
+    /// The culler that drew it.
+    pub eye: &'a Eye,
+    /// The backend that it was drawn on.
+    pub queries: &'a SoftwareQueries,
+    /// What [`Scene::sync`] returned.
+    pub synced: SyncReport,
+    /// What [`Culler::frame`] returned.
+    pub stats: FrameStats,
+    /// What [`Scene::adapt`] returned.
+    pub adapted: Duration,
+    /// Triangles that the closure drew.
+    pub triangles: u64,
+}
+
+impl Run {
+    /// Prepares to measure `flags.frames` frames of a world that has been spawned.
+    pub fn new(flags: &Flags, scene_name: &str, world: &World) -> anyhow::Result<Self> {
+        let objects = world.query::<&Bounds>().iter().count();
+        let triangles = world.query::<&Drawable>().iter().map(|d| d.mesh.triangle_count() as u64).sum();
+        let setting = Setting {
+            scene: scene_name.to_owned(),
+            objects,
+            triangles,
+            policy: flags.policy.clone(),
+            backend: SoftwareQueries::new().name().to_owned(),
+            adapter: None,
+            viewport: [flags.size.0, flags.size.1],
+            seed: flags.seed,
+        };
+        println!(
+            "{scene_name}: {} objects, {} triangles; policy {}, {} frames",
+            table::count(objects as f64),
+            table::count(triangles as f64),
+            flags.policy,
+            flags.frames
+        );
+        let painter = Painter { detail: flags.detail()? };
+        let style = "{bar:40} frame {pos} of {len}, {elapsed} so far, {eta} left";
+        Ok(Self {
+            painter,
+            setting,
+            bar: ProgressBar::new(flags.frames.into()).with_style(ProgressStyle::with_template(style)?),
+            started: Instant::now(),
+            records: Vec::new(),
+            reference: Reference::new(painter, flags.oracle),
+            view: None,
+            tree_built: TreeStats::default(),
+            flags: flags.clone(),
+        })
+    }
+
+    /// The renderer that draws as finely as the flags say.
+    pub fn painter(&self) -> Painter {
+        self.painter
+    }
+
+    /// How far the camera's flight has got, 0 to 1; None when the run is over.
+    pub fn next(&mut self) -> Option<f32> {
+        let (done, all) = (self.records.len() as u32, self.flags.frames);
+        (done < all).then(|| done as f32 / (all - 1).max(1) as f32)
+    }
+
+    /// Looks at the frame beside the one that is measured: for `--oracle`, and for policies that
+    /// draw what a reference found. To be called between sync and frame.
+    pub fn look(&mut self, scene: &Scene, world: &World, view: &View, eye: &mut Eye) -> anyhow::Result<()> {
+        self.reference.look(scene, world, view, eye)
+    }
+
+    /// Takes a frame's figures.
+    pub fn record(&mut self, frame: Frame<'_>) {
+        let Frame { scene, view, eye, synced, stats, .. } = &frame;
+        let ms = |time: Duration| report::round(time.as_secs_f64() * 1e3);
+        let tree = synced.tree_time + frame.adapted;
+        let cull = stats.policy + stats.draw + stats.query + stats.wait;
+        let frustum = Frustum::new(view);
+        let inside = |bounds: Option<tercet::geom::Aabb>| bounds.is_none_or(|b| frustum.intersects(&b));
+        let mut record = FrameRecord {
+            frame: self.records.len() as u32,
+            frame_ms: ms(synced.sync_time + tree + cull),
+            sync_ms: ms(synced.sync_time),
+            tree_ms: ms(tree),
+            policy_ms: ms(stats.policy),
+            draw_ms: ms(stats.draw),
+            query_ms: ms(stats.query),
+            wait_ms: ms(stats.wait),
+            drawn: stats.drawn,
+            drawn_triangles: frame.triangles,
+            in_frustum: scene.objects().filter(|o| inside(o.bounds)).count() as u32,
+            queries: stats.queries,
+            query_boxes: stats.query_boxes,
+            waves: stats.waves,
+            state_changes: stats.state_changes,
+            ..Default::default()
+        };
+        self.reference.judge(scene, eye, frame.queries, &mut record);
+        if self.records.is_empty() {
+            self.tree_built = scene.tree().stats();
+        }
+        self.records.push(record);
+        self.view = Some((*view).clone());
+        self.bar.inc(1);
+    }
+
+    /// Writes figures, plots and pictures, and prints the table.
+    ///
+    /// # Errors
+    /// When the run is not complete, or a file cannot be written.
+    pub fn finish(self, scene: &Scene, world: &World, eye: &Eye) -> anyhow::Result<Summary> {
+        self.bar.finish_and_clear();
+        let view = self.view.as_ref().context("the run is not complete: no frame was measured")?;
+        let taken = self.started.elapsed();
+        let out = self.flags.out();
+        fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
+        let summary = Summary::new(self.setting.clone(), self.tree(scene), &self.records);
+        report::write(&out, &summary, &self.records)?;
+        plots::write(&out, &summary, &self.records)?;
+        top_view::write(&out, &summary, scene, view, eye)?;
+        last_frame::write(&out, scene, world, view, &self.painter)?;
+        println!("{}", table::table(&summary));
+        println!(
+            "{} frames in {:.1} s; figures and pictures are in {}",
+            summary.frames,
+            taken.as_secs_f64(),
+            out.display()
+        );
+        Ok(summary)
+    }
+
+    /// The tree's figures; those of events are per frame, the first one, which builds, left out.
+    fn tree(&self, scene: &Scene) -> TreeFigures {
+        let (built, now) = (self.tree_built, scene.tree().stats());
+        let frames = (self.records.len() as f64 - 1.0).max(1.0);
+        let each = |before: u64, after: u64| report::round((after - before) as f64 / frames);
+        TreeFigures {
+            nodes: now.nodes,
+            depth: now.depth,
+            splits: each(built.splits, now.splits),
+            merges: each(built.merges, now.merges),
+            moves: each(built.moves, now.moves),
+            flips: each(built.flips, now.flips),
+            maintenance_share: 0.0,
+        }
+    }
+}
