@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, anyhow, bail, ensure};
 use glam::Vec3;
 use tercet::worlds::Pose;
 
@@ -17,7 +17,7 @@ const COLUMNS: [&str; 7] = ["eye_x", "eye_y", "eye_z", "target_x", "target_y", "
 /// eye; or a file without a frame.
 pub(crate) fn read(file: &Path) -> anyhow::Result<Vec<Pose>> {
     let text = fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-    parse(&text).with_context(|| format!("{} is not a camera's path", file.display()))
+    parse(&text).map_err(|why| anyhow!("{}, {why:#}", file.display()))
 }
 
 fn parse(text: &str) -> anyhow::Result<Vec<Pose>> {
@@ -33,7 +33,7 @@ fn parse(text: &str) -> anyhow::Result<Vec<Pose>> {
             poses.push(pose(&fields).with_context(|| format!("line {}", n + 1))?);
         }
     }
-    ensure!(!poses.is_empty(), "it has no line with a frame");
+    ensure!(!poses.is_empty(), "which has no line with a frame");
     Ok(poses)
 }
 

@@ -18,7 +18,7 @@ use clap::Args;
 use support::flags::Flags;
 use support::run::{Frame, Run};
 use tercet::Culler;
-use tercet::geom::View;
+use tercet::geom::{Aabb, View};
 use tercet::query::software::SoftwareQueries;
 use tercet::scene::{Scene, SceneConfig, import};
 use tercet::worlds::Pose;
@@ -47,7 +47,8 @@ fn main() -> anyhow::Result<()> {
     let path: Vec<Pose> = match &scenery.camera {
         Some(file) => camera_file::read(file)?,
         None => {
-            let flight = walk::through(&model.bounds, model.objects.len());
+            let boxes: Vec<Aabb> = model.objects.iter().map(|o| o.bounds).collect();
+            let flight = walk::through(&model.bounds, &boxes);
             let last = (flags.frames - 1).max(1) as f32;
             (0..flags.frames).map(|n| flight.pose(n as f32 / last)).collect()
         }

@@ -447,3 +447,31 @@ fn an_empty_scene_is_no_error() {
     let imported = read(&Writer::new());
     assert!(imported.model.objects.is_empty() && imported.model.bounds.is_empty());
 }
+
+#[cfg(feature = "lod")]
+#[test]
+fn levels_are_made_for_meshes_whose_vertices_are_split() {
+    // A sphere as a soup of triangles: no vertex is shared.
+    const N: u32 = 32;
+    let point = |u: u32, v: u32| {
+        let (sin, cos) = (std::f32::consts::TAU * (u % N) as f32 / N as f32).sin_cos();
+        let (radius, y) = (std::f32::consts::PI * v as f32 / N as f32).sin_cos();
+        [radius * cos, y, radius * sin]
+    };
+    let cells = (0..N * N).map(|c| (c % N, c / N));
+    let soup: Vec<[f32; 3]> = cells
+        .flat_map(|(u, v)| [(u, v), (u, v + 1), (u + 1, v), (u + 1, v), (u, v + 1), (u + 1, v + 1)])
+        .map(|(u, v)| point(u, v))
+        .collect();
+    let w = one_primitive(|w| json!({ "attributes": { "POSITION": w.positions(&soup) } }));
+    let mut imported = read(&w);
+    let before = imported.model.meshes[0].clone();
+    imported.generate_levels(100).expect("a sphere can be simplified");
+    check_bounds(&imported);
+    let after = &imported.model.meshes[0];
+    assert_eq!((after.bounds(), after.name()), (before.bounds(), before.name()));
+    let triangles: Vec<usize> = after.levels().iter().map(|level| level.indices.len() / 3).collect();
+    assert_eq!(triangles[0], 2048);
+    assert!(triangles.len() == 5 && triangles.windows(2).all(|t| t[1] <= t[0] * 5 / 8), "{triangles:?}");
+    assert!(after.levels()[4].error < 0.3, "it is still a ball of radius 1");
+}
