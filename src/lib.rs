@@ -1,5 +1,7 @@
 //! Tercet: a dynamic-scene occlusion-culling engine.
 
+#![warn(unreachable_pub)]
+
 mod culler;
 mod dial;
 mod error;

@@ -18,7 +18,7 @@ pub struct Flags {
     #[arg(long, value_name = "NAME", default_value = "dual-query")]
     pub policy: String,
 
-    /// Set dials of the policy, the tree or the drawing by name; see the lists below
+    /// Set dials of the policy, the tree or the example by name; see the lists below
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value, num_args = 1..)]
     pub dials: Vec<(String, String)>,
 
@@ -131,14 +131,24 @@ impl Flags {
 
     /// How finely meshes are drawn.
     pub fn detail(&self) -> anyhow::Result<Detail> {
-        let mut detail = if self.full_detail { Detail::FULL } else { Detail::default() };
-        for (_, value) in self.dials.iter().filter(|(key, _)| key == MAX_ERROR) {
-            match value.parse() {
-                Ok(pixels) if pixels >= 0.0 => detail.max_error_px = pixels,
-                _ => bail!("cannot set {MAX_ERROR}={value}: it takes a number of pixels, 0 or more"),
-            }
+        let default = if self.full_detail { Detail::FULL } else { Detail::default() };
+        let max_error_px = self.number(&MAX_ERROR, default.max_error_px)?;
+        Ok(Detail { max_error_px })
+    }
+
+    /// How far the camera flies, 0 to 1.
+    pub fn flight_end(&self) -> anyhow::Result<f32> {
+        self.number(&FLIGHT_END, 1.0)
+    }
+
+    fn number(&self, dial: &Number, default: f32) -> anyhow::Result<f32> {
+        let Some((key, value)) = self.dials.iter().rev().find(|(key, _)| key == dial.key) else {
+            return Ok(default);
+        };
+        match value.parse() {
+            Ok(x) if (0.0..=dial.most).contains(&x) => Ok(x),
+            _ => bail!("cannot set {key}={value}: it takes a number from 0 to {}", dial.most),
         }
-        Ok(detail)
     }
 
     /// The rectangle that is drawn.
@@ -161,9 +171,9 @@ impl Flags {
         }
         let policy = self.policy()?;
         for (key, value) in &self.dials {
-            if !has(&policy.dials(), key) && !is_tree_dial(key) && key != MAX_ERROR {
+            if !has(&policy.dials(), key) && !is_tree_dial(key) && !is_own_dial(key) {
                 bail!(
-                    "--set {key}={value}: neither {}, nor the tree, nor the drawing has a dial of that name; \
+                    "--set {key}={value}: neither {}, nor the tree, nor the example has a dial of that name; \
                      --help lists them",
                     self.policy
                 );
@@ -171,12 +181,24 @@ impl Flags {
         }
         self.tree()?;
         self.detail()?;
+        self.flight_end()?;
         Ok(())
     }
 }
 
-/// The dial of the drawing.
-const MAX_ERROR: &str = "max_error_px";
+/// A dial of the examples themselves.
+struct Number {
+    key: &'static str,
+    about: &'static str,
+    most: f32,
+}
+
+const MAX_ERROR: Number = Number {
+    key: "max_error_px",
+    about: "how far a coarser mesh may lie from the true one, pixels",
+    most: 1e6,
+};
+const FLIGHT_END: Number = Number { key: "flight_end", about: "how far the camera flies, 0 to 1", most: 1.0 };
 
 fn has(dials: &[tercet::Dial], key: &str) -> bool {
     dials.iter().any(|dial| dial.key == key)
@@ -184,6 +206,10 @@ fn has(dials: &[tercet::Dial], key: &str) -> bool {
 
 fn is_tree_dial(key: &str) -> bool {
     key == "preset" || has(&TreeConfig::default().dials(), key)
+}
+
+fn is_own_dial(key: &str) -> bool {
+    [MAX_ERROR, FLIGHT_END].iter().any(|dial| dial.key == key)
 }
 
 /// What stands below the flags in `--help`.
@@ -206,13 +232,14 @@ fn catalogue(example: &str) -> String {
     }
     list(&mut text, "Dials of the tree", &TreeConfig::default().dials());
     let _ = writeln!(text, "  {:<24} all of them at once: paper, stable", "preset=stable");
-    let pixels = Detail::default().max_error_px;
-    let _ = writeln!(text, "\nDials of the drawing (--set, with their defaults):");
-    let _ = write!(
-        text,
-        "  {:<24} how far a coarser mesh may lie from the true one, pixels",
-        format!("{MAX_ERROR}={pixels}")
-    );
+    let own = |dial: Number, value: f32| tercet::Dial {
+        key: dial.key,
+        value: value.to_string(),
+        about: dial.about.to_owned(),
+    };
+    let own = [own(MAX_ERROR, Detail::default().max_error_px), own(FLIGHT_END, 1.0)];
+    list(&mut text, "Dials of the example", &own);
+    text.truncate(text.trim_end().len());
     text
 }
 
@@ -275,6 +302,7 @@ mod tests {
             "--set o_split=many",
             "--set o_split",
             "--set max_error_px=-1",
+            "--set flight_end=1.5",
             "--size 0x720",
             "--size 1280",
             "--size 16385x1",

@@ -47,9 +47,12 @@ pub fn save(path: &Path, view: &View, surfaces: &[Option<Surface>], fog: f32) ->
     let (width, height) = (view.viewport().width, view.viewport().height);
     let shot = Shot::new(view, surfaces);
     let open = shot.smooth(&shot.openness());
-    let pixels: Vec<u8> = (0..surfaces.len())
+    let light: Vec<Vec3> =
+        (0..surfaces.len()).into_par_iter().map(|at| shot.light(at, open[at], fog)).collect();
+    let exposure = exposure(&light);
+    let pixels: Vec<u8> = (0..light.len())
         .into_par_iter()
-        .flat_map_iter(|at| encode(shot.light(at, open[at], fog), shot.pixel(at)))
+        .flat_map_iter(|at| encode(light[at] * exposure, shot.pixel(at)))
         .collect();
     let large = RgbImage::from_raw(width, height, pixels)
         .ok_or_else(|| anyhow!("{} pixels do not fill {width} × {height}", surfaces.len()))?;
@@ -205,6 +208,15 @@ fn sky(along: Vec3) -> Vec3 {
 /// Jimenez 2014).
 fn speckle(x: usize, y: usize) -> f32 {
     (52.982_918 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract()
+}
+
+/// What to multiply the light with so that halls and roofs both come out well: half of the way to
+/// a middle grey, by the mean of the logarithms of luminance.
+fn exposure(light: &[Vec3]) -> f32 {
+    const MIDDLE: f32 = 0.32;
+    let log = |l: &Vec3| f64::from(l.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-3).ln());
+    let mean = (light.par_iter().map(log).sum::<f64>() / light.len().max(1) as f64).exp() as f32;
+    (MIDDLE / mean).sqrt().clamp(0.5, 2.5)
 }
 
 /// Linear light to sRGB bytes, with highlights rolled off and half a step of noise against bands.

@@ -90,12 +90,16 @@ fn drawn_objects(path: &Path, summary: &Summary, frames: &[FrameRecord]) -> anyh
         let area = canvas::heading(sheet, &title, &subtitle(summary), &keys)?;
         let most = frames.iter().map(|f| f.in_frustum.max(f.drawn)).max().unwrap_or(0);
         let top = nice_top(1.05 * f64::from(most));
+        let counts = |frame| known.iter().filter_map(move |(.., value)| value(frame));
+        let least = frames.iter().flat_map(counts).min().unwrap_or(0).max(1);
+        let bottom = 10f64.powi(least.ilog10() as i32);
         // The frustum's curve is often fifty times higher than the others, which then look alike:
         // the lower plot shows ratios.
         let (upper, lower) = area.split_vertically(px(390));
         let mut linear = axes(&upper, frames.len(), 0.0..top, "objects")?;
-        let mut ratios = axes(&lower, frames.len(), (1.0..top).log_scale(), "objects, logarithmic")?;
-        for (_, color, width, value) in known {
+        let mut ratios =
+            axes(&lower, frames.len(), (bottom..top.max(2.0 * bottom)).log_scale(), "objects, logarithmic")?;
+        for (_, color, width, value) in &known {
             let style = color.stroke_width(px(1) as u32 * width);
             let points: Vec<_> =
                 frames.iter().filter_map(|f| Some((f64::from(f.frame), f64::from(value(f)?)))).collect();

@@ -36,6 +36,7 @@ pub struct Run {
     started: Instant,
     records: Vec<FrameRecord>,
     reference: Reference,
+    flight_end: f32,
     view: Option<View>,
     /// The tree's counters after the first frame, which builds it.
     tree_built: TreeStats,
@@ -92,6 +93,7 @@ impl Run {
             started: Instant::now(),
             records: Vec::new(),
             reference: Reference::new(painter, flags.oracle),
+            flight_end: flags.flight_end()?,
             view: None,
             tree_built: TreeStats::default(),
             flags: flags.clone(),
@@ -106,7 +108,7 @@ impl Run {
     /// How far the camera's flight has got, 0 to 1; None when the run is over.
     pub fn next(&mut self) -> Option<f32> {
         let (done, all) = (self.records.len() as u32, self.flags.frames);
-        (done < all).then(|| done as f32 / (all - 1).max(1) as f32)
+        (done < all).then(|| self.flight_end * done as f32 / (all - 1).max(1) as f32)
     }
 
     /// Looks at the frame beside the one that is measured: for `--oracle`, and for policies that

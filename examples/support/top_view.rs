@@ -26,7 +26,7 @@ const CELLS: RGBColor = RGBColor(110, 160, 130);
 const FRUSTUM: RGBColor = RGBColor(252, 204, 60);
 
 /// What became of an object in the frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Fate {
     /// Its box does not meet the view frustum.
     Outside,
@@ -102,9 +102,11 @@ fn save(
     let extent = extent(&marks, view);
     let shape = (extent.size().z / extent.size().x).clamp(0.4, 1.2);
     let size = (WIDTH, HEADING + (WIDTH as f32 * shape) as u32);
-    // Small things come last, on top of the large ones that they stand in.
+    // Large things first: the small ones stand in them. Of the small ones, what was drawn last.
     let area = |m: &Mark| m.bounds.size().x * m.bounds.size().z;
-    marks.sort_by(|a, b| area(b).total_cmp(&area(a)));
+    let small = 1e-4 * extent.size().x * extent.size().z;
+    let key = |m: &Mark| (area(m) < small).then_some(m.fate);
+    marks.sort_by(|a, b| key(a).cmp(&key(b)).then(area(b).total_cmp(&area(a))));
     canvas::save(path, size, |sheet| {
         let below = canvas::heading(sheet, "The last frame from above", subtitle, &keys)?;
         let map = Map::new(&below, &extent);

@@ -5,7 +5,8 @@
 //! objects with at least one sample that is not behind the finished depth (*EVS*; ties at equal
 //! depth all count). Objects that hide nothing (transparent ones) are tested against the finished
 //! depth of those that do. The truth is that of the levels of detail drawn, and does not depend on
-//! any bounds.
+//! any bounds: they only order the first pass, from near to far, so that the hierarchy can skip
+//! draw calls that change nothing.
 
 use rayon::prelude::*;
 
@@ -64,6 +65,8 @@ impl Surface {
 pub struct Oracle {
     queries: SoftwareQueries,
     pass: SoftwarePass,
+    /// Candidates from near to far: a distance in some measure, and an index.
+    order: Vec<(f32, u32)>,
     /// Whose each draw call is.
     owners: Vec<ObjectRef>,
     /// The depth of what hides, while the frame's own holds more.
@@ -96,8 +99,8 @@ impl Oracle {
         self.look_at(view, &candidates, draw)
     }
 
-    /// The same for a list of objects: `draw` is called once for each, with that one alone, those
-    /// that hide nothing last.
+    /// The same for a list of objects: `draw` is called once for each, with that one alone, from
+    /// near to far, and those that hide nothing last.
     ///
     /// # Errors
     /// None yet; drawing on a device could fail.
@@ -109,8 +112,11 @@ impl Oracle {
     ) -> Result<Truth, Error> {
         self.pass.clear();
         self.owners.clear();
+        sort_by_distance(view, candidates, &mut self.order);
+        let order = &self.order;
         let mut record = |not_occluder: bool| {
-            for candidate in candidates.iter().filter(|c| c.not_occluder == not_occluder) {
+            let sorted = order.iter().map(|&(_, i)| &candidates[i as usize]);
+            for candidate in sorted.filter(|c| c.not_occluder == not_occluder) {
                 draw(&mut self.pass, &[candidate.object]);
                 self.owners.resize(self.pass.calls().len(), candidate.object);
             }
@@ -121,7 +127,7 @@ impl Oracle {
         let calls = self.pass.calls();
 
         self.queries.begin(view)?;
-        self.queries.rasterise(view, &calls[..occluders]);
+        self.queries.rasterise_sorted(view, &calls[..occluders]);
         let mut truth = Truth::default();
         self.ask_boxes(view, candidates, &mut truth)?;
 
@@ -218,4 +224,21 @@ impl Oracle {
             }
         })
     }
+}
+
+/// Orders candidates roughly from near to far. It saves time and decides nothing.
+fn sort_by_distance(view: &View, candidates: &[Candidate], order: &mut Vec<(f32, u32)>) {
+    let eye = view.eye();
+    let distance = |bounds: &Aabb| match eye.w {
+        0.0 => -eye.truncate().dot(bounds.center()),
+        _ => bounds.distance_squared(eye.truncate()),
+    };
+    order.clear();
+    order.extend(
+        candidates
+            .iter()
+            .enumerate()
+            .map(|(i, c)| (c.bounds.as_ref().map_or(f32::NEG_INFINITY, distance), i as u32)),
+    );
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
 }

@@ -215,6 +215,36 @@ fn drawing_again_changes_nothing() {
     assert!(apart.stats().skipped_calls > together.stats().skipped_calls, "no call was found hidden");
 }
 
+/// Small things just before, in and just behind a wall: those behind are skipped, and nothing else.
+#[test]
+fn hidden_draw_calls_are_skipped_and_no_others() {
+    let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 70.0, 0.1, Viewport::new(200, 150)).expect("a view");
+    let mut dice = dice(31);
+    let wall = soup(&[[
+        Vec3::new(-99.0, -99.0, -10.0),
+        Vec3::new(99.0, -99.0, -10.0),
+        Vec3::new(0.0, 150.0, -10.0),
+    ]]);
+    let things: Vec<Mesh> = (0..200)
+        .map(|i| {
+            let at = Vec3::new(dice.random_range(-5.0..5.0), dice.random_range(-4.0..4.0), -10.0);
+            let depth = [0.0, 1e-6, 1e-3, 0.5][i % 4] * dice.random_range(-1.0..1.0_f32);
+            let mut v = || at + Vec3::new(dice.random_range(-0.5..0.5), dice.random_range(-0.5..0.5), depth);
+            soup(&[[v(), v(), v()]])
+        })
+        .collect();
+    let mut without = SoftwareQueries::new();
+    draw(&mut without, &view, std::slice::from_ref(&wall));
+    let mut with = SoftwareQueries::new();
+    draw(&mut with, &view, std::slice::from_ref(&wall));
+    // A question refreshes the hierarchy, by which draw calls are skipped.
+    crate::questions::ask_anything(&mut with);
+    add(&mut without, &things);
+    add(&mut with, &things);
+    assert!(depth(&with) == depth(&without));
+    assert!(without.stats().skipped_calls == 0 && with.stats().skipped_calls > 40, "{:?}", with.stats());
+}
+
 #[test]
 fn broken_transforms_draw_nothing_and_do_not_panic() {
     let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 70.0, 0.1, Viewport::new(64, 48)).expect("a view");

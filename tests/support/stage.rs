@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Mat4, Vec2, Vec3};
 use hecs::{Entity, World};
-use rand::{Rng, RngExt, SeedableRng};
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tercet::draw::{Detail, Drawable};
 use tercet::geom::{Aabb, DepthDirection, DepthFormat, View, Viewport, projection};
@@ -56,8 +56,9 @@ impl Stage {
             }
         } else {
             let step = self.extent() * 0.01;
-            self.eye += self.offset() * step;
-            self.target += self.offset() * step;
+            let (walk, turn) = (self.offset() * step, self.offset() * step);
+            self.eye += walk;
+            self.target += turn;
         }
         self.view()
     }
@@ -94,12 +95,7 @@ impl Stage {
                 _ => {
                     let placed = self.model.objects[self.rng.random_range(0..count)];
                     let mesh = self.model.meshes[placed.mesh].clone();
-                    let Drawable { color, .. } = Drawable {
-                        mesh: mesh.clone(),
-                        world_from_object: placed.world_from_object,
-                        color: placed.color,
-                    };
-                    let world_from_object = placed.world_from_object;
+                    let (world_from_object, color) = (placed.world_from_object, placed.color);
                     self.world.spawn((Bounds(placed.bounds), Drawable { mesh, world_from_object, color }));
                 }
             }
@@ -165,8 +161,13 @@ impl Stage {
         let extent = self.extent();
         let near = extent * 1e-3;
         let (clip_from_view, depth) = match kind {
-            0 => (projection::orthographic(extent * aspect, extent, 0.0, extent * 3.0), DepthDirection::Reversed),
-            1 => (projection::perspective_standard(fov, aspect, near, extent * 4.0), DepthDirection::Standard),
+            0 => (
+                projection::orthographic(extent * aspect, extent, 0.0, extent * 3.0),
+                DepthDirection::Reversed,
+            ),
+            1 => {
+                (projection::perspective_standard(fov, aspect, near, extent * 4.0), DepthDirection::Standard)
+            }
             2 => (projection::perspective_finite(fov, aspect, near, extent * 2.0), DepthDirection::Reversed),
             3 => {
                 let jitter = Vec2::new(self.rng.random_range(-0.5..0.5), self.rng.random_range(-0.5..0.5));
@@ -183,13 +184,10 @@ impl Stage {
         let along = (target - self.eye).normalize();
         let up = if along.cross(up).length() < 1e-3 { Vec3::X } else { up };
         let view_from_world: Mat4 = glam::camera::rh::view::look_at_mat4(self.eye, target, up);
-        View::new(view_from_world, clip_from_view, self.viewport)
-            .expect("a usable view")
-            .with_target(depth, DepthFormat::Depth32Float, 1)
+        View::new(view_from_world, clip_from_view, self.viewport).expect("a usable view").with_target(
+            depth,
+            DepthFormat::Depth32Float,
+            1,
+        )
     }
-}
-
-/// A number in 0..1, for tests that need a seed's worth of choices.
-pub fn unit(rng: &mut impl Rng) -> f32 {
-    rng.random_range(0.0..1.0)
 }

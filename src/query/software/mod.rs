@@ -148,6 +148,18 @@ impl SoftwareQueries {
         self.depth.bytes() + self.hi_z.bytes()
     }
 
+    /// Draws calls that are sorted from near to far, in growing batches: after each the hierarchy
+    /// is brought up to date, so that hidden calls of the next are skipped. The depth is the same.
+    pub(crate) fn rasterise_sorted(&mut self, view: &View, calls: &[DrawCall]) {
+        let (mut first, mut count) = (0, 64);
+        while first < calls.len() {
+            let end = (first + count).min(calls.len());
+            self.rasterise(view, &calls[first..end]);
+            self.hi_z.refresh(self.simd, &self.depth);
+            (first, count) = (end, 2 * count);
+        }
+    }
+
     /// Draws into the depth of the frame that has begun.
     pub(crate) fn rasterise(&mut self, view: &View, calls: &[DrawCall]) {
         let screen = Screen::new(view);

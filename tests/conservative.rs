@@ -1,0 +1,222 @@
+//! With `Tradeoff::EXACT` a culled object never owned a sample: every policy on worlds in which
+//! everything changes every frame, each frame against the exact oracle. Each suite also asserts
+//! that hidden things were culled, so that a policy that draws everything cannot pass.
+
+mod support;
+
+use rayon::prelude::*;
+use support::stage::Stage;
+use support::{Outcome, Shown, run};
+use tercet::Error;
+use tercet::draw::Detail;
+use tercet::geom::{Proxy, View, Viewport};
+use tercet::policy::{self, Policy};
+use tercet::query::software::{SoftwarePass, SoftwareQueries};
+use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
+use tercet::tree::{Straddlers, TightBoxes, TreeConfig};
+use tercet::worlds::{self, Model, Pathology};
+
+const FRAMES: u32 = 24;
+const SCREEN: Viewport = Viewport::new(160, 90);
+
+/// The least share that a policy culls of what is hidden inside the frustum; None for those that
+/// cull by the frustum alone. With a cut every six frames and a fifth of the world changing, the
+/// baseline's skipped questions and its straddlers cost it most of what it could cull.
+fn least_culled(name: &str) -> Option<f64> {
+    match name {
+        "none" | "frustum" => None,
+        "statistical" => Some(0.05),
+        _ => Some(0.5),
+    }
+}
+
+fn assert_culls(name: &str, outcome: Outcome) {
+    let share = outcome.culled as f64 / outcome.hidden as f64;
+    if let Some(least) = least_culled(name) {
+        assert!(share > least, "{name} culled only {share:.2} of what was hidden: {outcome:?}");
+    }
+}
+
+/// The trees that the suites run on, in turn: the presets and the corners of their dials.
+fn trees() -> Vec<TreeConfig> {
+    let stable = TreeConfig::stable();
+    vec![
+        stable.clone(),
+        TreeConfig::paper(),
+        TreeConfig { straddlers: Straddlers::StayInParent, tight_boxes: TightBoxes::Never, ..stable.clone() },
+        TreeConfig { straddlers: Straddlers::Leaf, tight_boxes: TightBoxes::Settled, bulk_leaf: 8, ..stable },
+    ]
+}
+
+/// A policy with some of its dials turned, by a number.
+fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
+    let mut policy = policy::by_name(name).expect("a policy of that name");
+    let dials: &[(&str, &str)] = match (name, variant % 3) {
+        ("dual-query", 1) => &[("order", "visible-first"), ("n_skip", "4")],
+        ("dual-query", 2) => &[("max_waves", "3"), ("n_skip", "8")],
+        ("statistical", 1) => &[("in_flight", "1"), ("n_skip", "0")],
+        _ => &[],
+    };
+    for (key, value) in dials {
+        policy.set(key, value).expect("a dial of that name");
+    }
+    policy
+}
+
+/// Runs a policy over a model with churn.
+fn outcome(name: &str, model: Model, seed: u64) -> Outcome {
+    let trees = trees();
+    let tree = trees[seed as usize % trees.len()].clone();
+    let mut stage = Stage::new(model, seed, SCREEN, true);
+    run(&mut stage, tree, dialled(name, seed), &mut SoftwareQueries::new(), FRAMES)
+}
+
+#[test]
+fn random_worlds() {
+    for &name in policy::NAMES {
+        let seeds: Vec<u64> = (0..64).collect();
+        let outcomes = seeds.par_iter().map(|&seed| {
+            let outcome = outcome(name, worlds::random(seed, 120), seed);
+            assert_eq!(outcome.lost, 0, "{name} lost an object in random world {seed}");
+            outcome
+        });
+        let all = outcomes.reduce(Outcome::default, |mut a, b| {
+            a.add(b);
+            a
+        });
+        assert!(all.hidden > 10_000 && all.visible > 5_000, "the worlds have things to hide: {all:?}");
+        assert_culls(name, all);
+    }
+}
+
+#[test]
+fn pathological_worlds() {
+    for &name in policy::NAMES {
+        let mut all = Outcome::default();
+        for (i, kind) in Pathology::ALL.into_iter().enumerate() {
+            for variant in 0..4 {
+                let outcome = outcome(name, worlds::pathological(kind), 4 * i as u64 + variant);
+                assert_eq!(outcome.lost, 0, "{name} lost an object in {kind:?}, variant {variant}");
+                all.add(outcome);
+            }
+        }
+        if least_culled(name).is_some() {
+            assert!(all.culled > 0, "{name} culled nothing that was hidden: {all:?}");
+        }
+    }
+}
+
+#[test]
+fn the_plant_with_bunnies() {
+    let bunny = worlds::random(0, 1).meshes[0].clone();
+    let outcomes: Vec<_> = policy::NAMES
+        .par_iter()
+        .map(|&name| {
+            let mut model = worlds::power_plant(3, 0.1);
+            scatter(&mut model, &bunny);
+            let outcome = outcome(name, model, 5);
+            assert_eq!(outcome.lost, 0, "{name} lost an object in the plant");
+            (name, outcome)
+        })
+        .collect();
+    for (name, outcome) in outcomes {
+        assert_culls(name, outcome);
+    }
+}
+
+/// Some small movers among the plant's rooms; the bunny itself is an asset of a feature.
+fn scatter(model: &mut Model, fallback: &tercet::scene::mesh::Mesh) {
+    #[cfg(feature = "gltf")]
+    let mesh = worlds::bunny_mesh().unwrap_or_else(|_| fallback.clone());
+    #[cfg(not(feature = "gltf"))]
+    let mesh = fallback.clone();
+    let size = 1.0 / mesh.bounds().size().max_element();
+    model.meshes.push(mesh);
+    let (room, last) = (model.bounds, model.meshes.len() - 1);
+    for i in 0..100u32 {
+        // A low-discrepancy sequence fills the box evenly.
+        let part = |step: f32| (i as f32 * step).fract();
+        let at = room.min + room.size() * glam::Vec3::new(part(0.819_173), part(0.671_044), part(0.549_7));
+        let place = glam::Affine3A::from_scale_rotation_translation(
+            glam::Vec3::splat(size),
+            glam::Quat::from_rotation_y(i as f32),
+            at,
+        );
+        model.place(last, place, [200, 180, 160]);
+    }
+}
+
+/// Whole pictures: what is not drawn leaves no trace, down to the bits of the depth buffer.
+#[test]
+fn frames_equal_those_without_culling() {
+    for name in ["dual-query", "statistical", "stop-and-wait"] {
+        for seed in 0..4 {
+            let mut stage = Stage::new(worlds::random(seed, 120), seed, Viewport::new(301, 203), false);
+            stage.detail = Detail::FULL;
+            let tree = TreeConfig::default();
+            let mut queries = SoftwareQueries::new();
+            let outcome = run(&mut stage, tree, dialled(name, seed), &mut queries, FRAMES);
+            assert_eq!(outcome.wrong_pixels, 0, "{name}, world {seed}");
+            assert!(outcome.culled > 0);
+        }
+    }
+}
+
+/// A backend that lies a little: a box of which few samples are visible is called hidden. The
+/// suite must find that out, or it proves nothing.
+struct Lying(SoftwareQueries);
+
+impl Shown for Lying {
+    fn shown(&self) -> &SoftwareQueries {
+        &self.0
+    }
+}
+
+impl QueryBackend for Lying {
+    type Pass = SoftwarePass;
+
+    fn name(&self) -> &'static str {
+        "lying"
+    }
+
+    fn can_block(&self) -> bool {
+        true
+    }
+
+    fn begin(&mut self, view: &View) -> Result<(), Error> {
+        self.0.begin(view)
+    }
+
+    fn draw(&mut self, record: impl FnOnce(&mut SoftwarePass)) -> Result<(), Error> {
+        self.0.draw(record)
+    }
+
+    fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
+        self.0.ask(ticket, boxes, want)
+    }
+
+    fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
+        self.0.answers(wait, |ticket, answer| match answer {
+            Answer::Dual { visible, total } if visible < 20 => {
+                deliver(ticket, Answer::Dual { visible: 0, total });
+            }
+            other => deliver(ticket, other),
+        })
+    }
+
+    fn end(&mut self) -> Result<(), Error> {
+        self.0.end()
+    }
+}
+
+#[test]
+fn a_lying_backend_is_found_out() {
+    let mut all = Outcome::default();
+    for seed in 0..4 {
+        let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+        let mut lying = Lying(SoftwareQueries::new());
+        let policy = dialled("dual-query", 0);
+        all.add(run(&mut stage, TreeConfig::default(), policy, &mut lying, FRAMES));
+    }
+    assert!(all.lost > 0 && all.wrong_pixels > 0, "{all:?}");
+}
