@@ -40,11 +40,13 @@ struct Scenery {
 fn main() -> anyhow::Result<()> {
     let (mut flags, scenery) = Flags::parse_with::<Scenery>("view", "A walk through any glTF scene.");
     let imported = import::load(&scenery.file)?;
+    #[cfg(feature = "lod")]
+    let imported = with_levels(imported, &flags)?;
     println!("{}", imported.report);
     let model = &imported.model;
     ensure!(!model.objects.is_empty(), "{}: there is nothing to see in it", scenery.file.display());
 
-    let path: Vec<Pose> = match &scenery.camera {
+    let mut path: Vec<Pose> = match &scenery.camera {
         Some(file) => camera_file::read(file)?,
         None => {
             let boxes: Vec<Aabb> = model.objects.iter().map(|o| o.bounds).collect();
@@ -53,6 +55,8 @@ fn main() -> anyhow::Result<()> {
             (0..flags.frames).map(|n| flight.pose(n as f32 / last)).collect()
         }
     };
+    let flown = flags.flight_end()? * path.len() as f32;
+    path.truncate((flown.ceil() as usize).max(1));
     flags.frames = path.len() as u32;
     let near = walk::near(&model.bounds);
 
@@ -86,4 +90,14 @@ fn main() -> anyhow::Result<()> {
     }
     run.finish(&scene, &world, &eye)?;
     Ok(())
+}
+
+/// A file says nothing of levels of detail: they are made here, unless nobody wants them.
+#[cfg(feature = "lod")]
+fn with_levels(mut imported: import::Imported, flags: &Flags) -> anyhow::Result<import::Imported> {
+    const LEAST_TRIANGLES: usize = 64;
+    if !flags.full_detail {
+        imported.generate_levels(LEAST_TRIANGLES)?;
+    }
+    Ok(imported)
 }
