@@ -2,12 +2,13 @@
 //!
 //! A [`Culler`] asks its policy for one action after the other and carries each out on the
 //! backend: draws join the render queue, questions flush it first, answers go back to the policy.
+//! An answer that does not come is *unknown*, which draws; one that nobody waits for is dropped.
 
 use std::time::{Duration, Instant};
 
 use crate::geom::{Frustum, PlaneMask, View};
 use crate::policy::{Action, Context, Extent, Policy};
-use crate::query::{QueryBackend, Wait};
+use crate::query::{Answer, QueryBackend, Ticket, Wait};
 use crate::scene::{ObjectId, ObjectRef, Scene};
 use crate::stats::FrameStats;
 use crate::tree::{NodeId, Votes};
@@ -20,10 +21,11 @@ pub struct Culler<P> {
     /// Speed against accuracy; exact by default.
     pub tradeoff: Tradeoff,
     frame: u32,
-    /// The scene that the history is about; 0 for none yet.
-    scene: u64,
+    /// The scene, and the making of its tree, that the history is about; 0 for none yet.
+    scene: (u64, u64),
     drawn: DrawnList,
     votes: Votes,
+    open: OpenQuestions,
     /// Reused by walks through the tree.
     stack: Vec<(NodeId, PlaneMask)>,
 }
@@ -35,9 +37,10 @@ impl<P: Policy> Culler<P> {
             policy,
             tradeoff: Tradeoff::EXACT,
             frame: 0,
-            scene: 0,
+            scene: (0, 0),
             drawn: DrawnList::default(),
             votes: Votes::default(),
+            open: OpenQuestions::default(),
             stack: Vec::new(),
         }
     }
@@ -51,8 +54,22 @@ impl<P: Policy> Culler<P> {
     /// # Errors
     /// [`Error::PendingEdits`] if the scene was edited since its last update;
     /// [`Error::CannotBlock`] if the policy needs answers that the backend cannot wait for; and
-    /// what the backend reports. The frame is then incomplete.
+    /// what the backend reports. The frame is then incomplete, and the visible list starts anew.
     pub fn frame<B: QueryBackend>(
+        &mut self,
+        scene: &Scene,
+        view: &View,
+        queries: &mut B,
+        draw: impl FnMut(&mut B::Pass, &[ObjectRef]),
+    ) -> Result<FrameStats, Error> {
+        let result = self.try_frame(scene, view, queries, draw);
+        if result.is_err() {
+            self.drawn.forget();
+        }
+        result
+    }
+
+    fn try_frame<B: QueryBackend>(
         &mut self,
         scene: &Scene,
         view: &View,
@@ -65,11 +82,15 @@ impl<P: Policy> Culler<P> {
             return Err(Error::CannotBlock { policy: self.policy.name(), backend: queries.name() });
         }
         if self.scene != scene.id() {
+            if self.scene.0 != scene.id().0 {
+                self.drawn.forget();
+            }
             self.scene = scene.id();
             self.policy.reset();
-            self.votes.clear();
         }
-        self.frame = self.frame.wrapping_add(1);
+        // Frame 0 is never drawn: it stands for "never".
+        self.frame = self.frame.wrapping_add(1).max(1);
+        self.open.clear();
         self.drawn.begin(scene, self.frame);
         let frustum = Frustum::new(view);
         let tradeoff = self.tradeoff;
@@ -94,13 +115,22 @@ impl<P: Policy> Culler<P> {
                     }
                     stats.queries += 1;
                     stats.query_boxes += boxes.len() as u32;
+                    let ticket = self.open.ask(ticket);
                     stats.query += timed(|| queries.ask(ticket, boxes, want))?;
                 }
                 Action::Wait(wait) => {
                     stats.waves += u32::from(wait == Wait::Block);
-                    let policy = &mut self.policy;
-                    stats.wait +=
-                        timed(|| queries.answers(wait, |ticket, answer| policy.answer(&cx, ticket, answer)))?;
+                    let (policy, open) = (&mut self.policy, &mut self.open);
+                    stats.wait += timed(|| {
+                        queries.answers(wait, |ticket, answer| {
+                            if let Some(asked) = open.close(ticket) {
+                                policy.answer(&cx, asked, answer);
+                            }
+                        })
+                    })?;
+                    if wait == Wait::Block {
+                        open.lost().for_each(|asked| policy.answer(&cx, asked, Answer::Unknown));
+                    }
                 }
                 Action::Done => break,
             }
@@ -108,6 +138,8 @@ impl<P: Policy> Culler<P> {
         self.drawn.flush(queries, &mut draw, &mut stats)?;
         self.drawn.flush_late(queries, &mut draw, &mut stats)?;
         queries.end()?;
+        // Votes that nobody took before are out of date.
+        self.votes.clear();
         self.policy.vote(&mut self.votes);
         stats.drawn = self.drawn.visible.len() as u32;
         stats.policy = start.elapsed().saturating_sub(stats.draw + stats.query + stats.wait);
@@ -144,7 +176,7 @@ impl<P> Culler<P> {
 
 /// A view that votes on the tree's shape; see [`Scene::adapt`].
 pub trait Voter {
-    /// Its answers since the last adaptation.
+    /// Its answers in the last frame, if they have not been taken yet.
     fn votes(&self) -> &Votes;
 
     /// The same, to empty.
@@ -158,6 +190,39 @@ impl<P> Voter for Culler<P> {
 
     fn votes_mut(&mut self) -> &mut Votes {
         &mut self.votes
+    }
+}
+
+/// The questions of a frame that have no answer yet, numbered through the frame for the backend.
+#[derive(Debug, Default)]
+struct OpenQuestions {
+    /// By the backend's number: the policy's own ticket, until it is answered.
+    asked: Vec<Option<Ticket>>,
+    /// All before this are answered.
+    first: usize,
+}
+
+impl OpenQuestions {
+    fn clear(&mut self) {
+        self.asked.clear();
+        self.first = 0;
+    }
+
+    fn ask(&mut self, ticket: Ticket) -> Ticket {
+        self.asked.push(Some(ticket));
+        Ticket(self.asked.len() as u32 - 1)
+    }
+
+    /// The policy's ticket of an answer that it waits for; none for one that comes twice, or is
+    /// to no question of this frame.
+    fn close(&mut self, ticket: Ticket) -> Option<Ticket> {
+        self.asked.get_mut(ticket.0 as usize)?.take()
+    }
+
+    /// Those that should have been answered by now, and were not.
+    fn lost(&mut self) -> impl Iterator<Item = Ticket> {
+        let first = std::mem::replace(&mut self.first, self.asked.len());
+        self.asked[first..].iter_mut().filter_map(Option::take)
     }
 }
 
@@ -177,6 +242,14 @@ struct DrawnList {
 }
 
 impl DrawnList {
+    /// Starts anew: everything drawn next has entered, and nothing has left.
+    fn forget(&mut self) {
+        self.visible.clear();
+        self.previous.clear();
+        self.entered.clear();
+        self.last_drawn.clear();
+    }
+
     fn begin(&mut self, scene: &Scene, frame: u32) {
         self.frame = frame;
         self.queue.clear();
@@ -269,10 +342,9 @@ impl DrawnList {
     }
 
     fn left(&self) -> impl Iterator<Item = ObjectRef> {
-        self.previous
-            .iter()
-            .copied()
-            .filter(|object| self.last_drawn[object.id.slot()] != (object.id.generation(), self.frame))
+        self.previous.iter().copied().filter(|object| {
+            self.last_drawn.get(object.id.slot()) != Some(&(object.id.generation(), self.frame))
+        })
     }
 }
 

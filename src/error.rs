@@ -44,7 +44,7 @@ pub enum Error {
     PendingEdits(usize),
     /// A policy that needs answers within the frame, on a backend that cannot block.
     #[error(
-        "policy {policy} needs answers within the frame, and backend {backend} cannot wait for them: choose a policy that takes late answers"
+        "policy {policy} needs answers within the frame, and backend {backend} cannot wait for them: choose `frustum`, or a backend that can wait"
     )]
     CannotBlock {
         /// The policy.

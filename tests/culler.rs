@@ -144,11 +144,28 @@ fn an_edited_scene_must_be_updated_first() {
     assert_eq!(stats.drawn, 1);
 }
 
-/// A backend that loses every answer, or cannot wait.
+/// A backend that loses every answer, or delivers each twice, or cannot wait.
 struct Broken {
     inner: SoftwareQueries,
     blocks: bool,
+    fault: Fault,
     asked: Vec<Ticket>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Fault {
+    /// Says that it lost them.
+    Unknown,
+    /// Says nothing.
+    Silent,
+    /// Delivers each answer twice, and one to a question that was never asked.
+    Twice,
+}
+
+impl Broken {
+    fn new(blocks: bool, fault: Fault) -> Self {
+        Self { inner: SoftwareQueries::new(), blocks, fault, asked: Vec::new() }
+    }
 }
 
 impl QueryBackend for Broken {
@@ -163,6 +180,7 @@ impl QueryBackend for Broken {
     }
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
+        self.asked.clear();
         self.inner.begin(view)
     }
 
@@ -170,14 +188,23 @@ impl QueryBackend for Broken {
         self.inner.draw(record)
     }
 
-    fn ask(&mut self, ticket: Ticket, _boxes: &[Proxy], _want: Want) -> Result<(), Error> {
+    fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
+        assert!(!self.asked.contains(&ticket), "a ticket is unique within its frame");
         self.asked.push(ticket);
-        Ok(())
+        self.inner.ask(ticket, boxes, want)
     }
 
-    fn answers(&mut self, _wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
-        self.asked.drain(..).for_each(|ticket| deliver(ticket, Answer::Unknown));
-        Ok(())
+    fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
+        let fault = self.fault;
+        self.inner.answers(wait, |ticket, answer| match fault {
+            Fault::Unknown => deliver(ticket, Answer::Unknown),
+            Fault::Silent => {}
+            Fault::Twice => {
+                deliver(ticket, answer);
+                deliver(ticket, answer);
+                deliver(Ticket(1_000_000), answer);
+            }
+        })
     }
 
     fn end(&mut self) -> Result<(), Error> {
@@ -189,7 +216,7 @@ impl QueryBackend for Broken {
 fn a_policy_that_must_wait_is_refused_where_nobody_can() {
     let mut scene = Scene::new(SceneConfig::default());
     scene.update();
-    let mut queries = Broken { inner: SoftwareQueries::new(), blocks: false, asked: Vec::new() };
+    let mut queries = Broken::new(false, Fault::Unknown);
     let mut eye = Culler::new(DualQuery::default());
     let error = eye.frame(&scene, &view(), &mut queries, |_, _| {}).unwrap_err();
     assert!(matches!(error, Error::CannotBlock { policy: "dual-query", backend: "broken" }), "{error}");
@@ -207,17 +234,49 @@ fn what_an_answer_was_lost_for_is_drawn() {
     let mut scene = Scene::new(SceneConfig::default());
     scene.sync(&world);
     for name in ["dual-query", "statistical", "stop-and-wait"] {
-        let mut queries = Broken { inner: SoftwareQueries::new(), blocks: true, asked: Vec::new() };
-        let mut lost = Culler::new(policy::by_name(name).unwrap());
-        let mut well = Culler::new(policy::by_name(name).unwrap());
-        for _ in 0..3 {
-            let stats = lost
-                .frame(&scene, &view(), &mut queries, |pass, objects| draw(&world, &mesh, pass, objects))
-                .unwrap();
-            assert_eq!(stats.drawn, 51, "{name}");
-            assert_eq!(frame(&mut well, &scene, &world, &mesh).drawn, 1, "{name}: the wall hides the rest");
+        for (fault, drawn) in [(Fault::Unknown, 51), (Fault::Silent, 51), (Fault::Twice, 1)] {
+            let mut queries = Broken::new(true, fault);
+            let mut eye = Culler::new(policy::by_name(name).unwrap());
+            for _ in 0..3 {
+                let stats = eye
+                    .frame(&scene, &view(), &mut queries, |pass, objects| draw(&world, &mesh, pass, objects))
+                    .unwrap();
+                assert_eq!(stats.drawn, drawn, "{name}: the wall hides fifty, where answers arrive");
+            }
         }
     }
+}
+
+/// A zero in a public field must not switch drawing off.
+#[test]
+fn no_questions_in_flight_still_means_one() {
+    let (mesh, mut world) = (square(), World::new());
+    spawn(&mut world, &mesh, at(0.0, 0.0, 0.0, 1.0));
+    let mut scene = Scene::new(SceneConfig::default());
+    scene.sync(&world);
+    let mut statistical = policy::Statistical::default();
+    statistical.in_flight = 0;
+    let mut eye = Culler::new(statistical);
+    assert_eq!(frame(&mut eye, &scene, &world, &mesh).drawn, 1);
+}
+
+/// A view that nobody adapts to keeps the votes of one frame, not of all.
+#[test]
+fn votes_do_not_pile_up() {
+    let (mesh, mut world) = (square(), World::new());
+    for i in 0..30 {
+        spawn(&mut world, &mesh, at(i as f32 * 0.6 - 9.0, 0.0, 0.0, 0.25));
+    }
+    let mut scene = Scene::new(SceneConfig::default());
+    scene.sync(&world);
+    let mut eye = Culler::new(DualQuery::default());
+    frame(&mut eye, &scene, &world, &mesh);
+    let once = tercet::Voter::votes(&eye).votes.len();
+    assert!(once > 0);
+    for _ in 0..10 {
+        frame(&mut eye, &scene, &world, &mesh);
+    }
+    assert!(tercet::Voter::votes(&eye).votes.len() <= 2 * once);
 }
 
 /// A history is about one scene: shown another, a culler begins anew.

@@ -241,6 +241,50 @@ fn coincident_objects_share_a_leaf() {
     }
 }
 
+/// Objects that could not be told apart can be once they have moved.
+#[test]
+fn coincident_objects_that_spread_are_separated() {
+    let mut scene = Scene::new(SceneConfig::default());
+    let ids: Vec<_> =
+        (0..1000).map(|_| scene.insert(Aabb::new(Vec3::ONE, Vec3::ONE), Traits::default())).collect();
+    scene.update();
+    assert_eq!(scene.tree().stats().nodes, 1);
+    for step in 1..=4 {
+        for (i, &id) in ids.iter().enumerate() {
+            let at = Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32) * step as f32;
+            scene.set_bounds(id, Aabb::from_center(at, Vec3::splat(0.1)));
+        }
+        scene.update();
+        scene.tree().validate().expect("a valid tree");
+    }
+    assert!(scene.tree().stats().nodes > 500, "{:?}", scene.tree().stats());
+}
+
+/// The content epoch of every node above an object changes when it moves, and of no other.
+#[test]
+fn epochs_follow_what_moves() {
+    let mut scene = Scene::new(SceneConfig::default());
+    let at = |i: usize, z: f32| Aabb::from_center(Vec3::new(i as f32 * 4.0, 0.0, z), Vec3::ONE);
+    let ids: Vec<_> = (0..64).map(|i| scene.insert(at(i, 0.0), Traits::default())).collect();
+    scene.update();
+    let epochs = |scene: &Scene| -> Vec<_> {
+        let tree = scene.tree();
+        tree.nodes().map(|n| (n.bounds, tree.epoch(n.id), tree.is_settled(n.id))).collect()
+    };
+    let before = epochs(&scene);
+    scene.set_bounds(ids[20], at(20, 0.0));
+    scene.update();
+    for (old, new) in before.iter().zip(epochs(&scene)) {
+        let above = old.0.contains(&at(20, 0.0));
+        assert_eq!(new.1 != old.1, above, "{:?}", old.0);
+        assert!(!(above && new.2), "what has just moved is not settled");
+    }
+    for _ in 0..scene.tree().config().settle_frames {
+        scene.update();
+    }
+    assert!(epochs(&scene).iter().all(|e| e.2), "at rest, everything settles");
+}
+
 /// A world that has moved far away and gathered there does not keep the depth of its journey.
 #[test]
 fn the_root_grows_and_shrinks_again() {

@@ -317,7 +317,7 @@ impl DualQuery {
         let n_skip = self.n_skip;
         let state = self.history.entry(node);
         state.streak = state.streak.saturating_add(1);
-        state.skip_until = cx.frame + state.streak.min(n_skip);
+        state.skip_until = cx.frame.saturating_add(state.streak.min(n_skip));
     }
 
     /// Draws a leaf, opens an inner node.

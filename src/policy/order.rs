@@ -51,8 +51,8 @@ impl ScreenTiles {
 
     /// The rows of tiles that a rectangle meets, and its bits in each.
     fn tiles(&self, rect: PixelRect) -> (RangeInclusive<usize>, u64) {
-        let (x0, x1) = (tile(rect.x0, self.width), tile(rect.x1.max(1) - 1, self.width));
-        let (y0, y1) = (tile(rect.y0, self.height), tile(rect.y1.max(1) - 1, self.height));
+        let (x0, x1) = (tile(rect.x0, self.width), tile(rect.x1.max(rect.x0 + 1) - 1, self.width));
+        let (y0, y1) = (tile(rect.y0, self.height), tile(rect.y1.max(rect.y0 + 1) - 1, self.height));
         (y0..=y1, (u64::MAX >> (63 - (x1 - x0))) << x0)
     }
 }

@@ -25,7 +25,7 @@ use crate::tree::NodeId;
 pub struct Statistical {
     /// Frames for which a visible node goes unasked, at most.
     pub n_skip: u32,
-    /// Questions in flight before their answers are awaited.
+    /// Questions in flight before their answers are awaited; 0 counts as 1.
     pub in_flight: u32,
     history: History,
     front: FrontQueue,
@@ -120,7 +120,7 @@ impl Statistical {
     /// Goes on until enough questions are in flight, or nothing is left.
     fn advance(&mut self, cx: &Context<'_>) {
         self.asked.clear();
-        while self.asked.len() < self.in_flight as usize {
+        while self.asked.len() < self.in_flight.max(1) as usize {
             let Some(front) = self.front.pop() else { break };
             let state = self.history.get(front.node);
             if state.visible && cx.frame <= state.skip_until {
@@ -145,7 +145,7 @@ impl Statistical {
         let n_skip = self.n_skip;
         let state = self.history.entry(front.node);
         state.streak = state.streak.saturating_add(1);
-        state.skip_until = cx.frame + state.streak.min(n_skip);
+        state.skip_until = cx.frame.saturating_add(state.streak.min(n_skip));
         self.take_as_visible(cx, front);
     }
 

@@ -21,10 +21,10 @@ pub struct BoundsF64 {
     pub max: DVec3,
 }
 
-/// How the app expects the object to move: a hint, never a promise that the engine relies on.
+/// How the app expects the object to move: a hint, which no algorithm here needs so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mobility {
-    /// Not known: the engine watches it.
+    /// Not known.
     #[default]
     Unknown,
     /// Rarely moves.
@@ -46,7 +46,7 @@ pub struct NotOccluder;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slack(pub f32);
 
-/// Which mesh the object is an instance of, for indirect draws.
+/// Which mesh the object is an instance of. The scene keeps it for the app's draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Batch(pub u32);
 

@@ -58,8 +58,8 @@ impl Scene {
             self.objects.slots().filter_map(|slot| Some((slot, self.tree.aabb_of(slot)?))).collect();
         self.origin = origin;
         self.tree = Tree::new(self.tree.config().clone());
-        // Histories are about nodes that are gone: a new identity makes cullers begin anew.
-        self.id = super::next_id();
+        // Histories are about nodes that are gone: cullers begin anew.
+        self.id.1 += 1;
         for (slot, aabb) in boxes {
             let moved = Aabb::from_f64(aabb.min.as_dvec3(), aabb.max.as_dvec3(), -shift);
             self.put(slot, moved);

@@ -65,8 +65,8 @@ pub struct SceneObject {
 /// Where things are: one per world, shared by all views.
 #[derive(Debug)]
 pub struct Scene {
-    /// Tells cullers apart from which scene their history is.
-    id: u64,
+    /// Tells cullers which scene their history is about, and which making of its tree.
+    id: (u64, u64),
     origin: DVec3,
     objects: Objects,
     tree: Tree,
@@ -79,7 +79,7 @@ impl Scene {
     /// An empty scene.
     pub fn new(config: SceneConfig) -> Self {
         Self {
-            id: next_id(),
+            id: (next_id(), 0),
             origin: config.origin,
             objects: Objects::default(),
             tree: Tree::new(config.tree),
@@ -152,7 +152,7 @@ impl Scene {
         start.elapsed()
     }
 
-    pub(crate) fn id(&self) -> u64 {
+    pub(crate) fn id(&self) -> (u64, u64) {
         self.id
     }
 

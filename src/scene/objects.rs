@@ -32,6 +32,8 @@ pub(crate) struct Objects {
     live: usize,
     /// Objects that are drawn always, in no particular order.
     always: Vec<u32>,
+    /// Where each slot stands in `always`, while it does.
+    always_at: Vec<u32>,
 }
 
 impl Objects {
@@ -43,6 +45,7 @@ impl Objects {
             self.place.push(Place::Free);
             self.flags.push(0);
             self.traits.push(Traits::default());
+            self.always_at.push(0);
             slot
         });
         self.entity[slot as usize] = entity;
@@ -68,8 +71,17 @@ impl Objects {
         let kept_apart = |p| matches!(p, Place::Always | Place::Bad);
         let old = std::mem::replace(&mut self.place[slot as usize], place);
         match (kept_apart(old), kept_apart(place)) {
-            (false, true) => self.always.push(slot),
-            (true, false) => self.always.retain(|&s| s != slot),
+            (false, true) => {
+                self.always_at[slot as usize] = self.always.len() as u32;
+                self.always.push(slot);
+            }
+            (true, false) => {
+                let hole = self.always_at[slot as usize] as usize;
+                self.always.swap_remove(hole);
+                if let Some(&moved) = self.always.get(hole) {
+                    self.always_at[moved as usize] = hole as u32;
+                }
+            }
             _ => {}
         }
     }

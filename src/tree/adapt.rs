@@ -1,8 +1,9 @@
 //! Votes split and merge leaves (Kovalčík & Tobola 2005, *adaptation*).
 //!
 //! A vote is the dual answer to a question about one node: how many samples of its box passed,
-//! of how many. Any view's vote can split; a merge takes the agreement of all views that see the
-//! three leaves, which is why the evidence kept is the greatest share that any of them saw.
+//! of how many. Any view's vote can split; a merge takes the agreement of all views that answered
+//! about the three leaves in the same adaptation: the evidence kept is the greatest share that any
+//! of them saw. So views that share a scene are best passed to one call.
 
 use glam::Vec3;
 
@@ -23,7 +24,7 @@ pub struct Vote {
     pub total: u32,
 }
 
-/// All answers of one view since the last adaptation.
+/// All answers of one view in its last frame.
 #[derive(Clone, Debug, Default)]
 pub struct Votes {
     /// Direction of view, for view-aligned planes.
@@ -53,7 +54,7 @@ impl Votes {
 /// Nodes looked at a frame in the search for leaves that nobody sees.
 const IDLE_SCAN: usize = 256;
 
-/// Frames for which an answer speaks for a merge: longer than any view skips its questions.
+/// Frames for which an answer speaks for a merge: a view skips its questions for less, by default.
 const FRESH_FRAMES: u32 = 16;
 
 impl Tree {
@@ -129,7 +130,7 @@ impl Tree {
         let parent = self.parent(node)?.index;
         let agree = self.nodes.children(parent).all(|child| {
             let Evidence { ratio, at } = self.nodes.evidence[child as usize];
-            let fresh = self.tick.wrapping_sub(at) < FRESH_FRAMES;
+            let fresh = at != 0 && self.tick.wrapping_sub(at) < FRESH_FRAMES;
             self.nodes.below[child as usize] == 0 || (fresh && ratio <= self.config.r_merge)
         });
         (agree && self.fits_in_leaf(parent) && self.has_cooled(parent)).then_some(parent)
@@ -199,8 +200,11 @@ impl Tree {
             if budget == 0 || !self.nodes.is_alive(node) || !self.fits_in_leaf(node) {
                 continue;
             }
+            // From the split on, if nobody has asked since.
+            let built = self.nodes.changed_at[node as usize];
             let idle = |n: u32| {
-                self.tick.wrapping_sub(self.nodes.evidence[n as usize].at) >= self.config.idle_frames
+                let last = self.nodes.evidence[n as usize].at.max(built);
+                self.tick.wrapping_sub(last) >= self.config.idle_frames
             };
             if idle(node) && self.nodes.children(node).all(idle) && self.has_cooled(node) {
                 self.merge(node);

@@ -41,8 +41,7 @@ impl Tree {
             }
         }
         let Some(plane) = self.plane_for(leaf, &items, forward) else {
-            // Only more objects can change that.
-            self.nodes.retry_at[leaf as usize] = 2 * items.len() as u32;
+            self.nodes.retry_at[leaf as usize] = (2 * items.len() as u32).max(4);
             self.scratch = items;
             return false;
         };
@@ -75,7 +74,7 @@ impl Tree {
                 let deeper = within.len() as u32 > extent.leaf && level + 1 < extent.levels;
                 let plane = if deeper { self.plane_for(child, &part[within.clone()], forward) } else { None };
                 if deeper && plane.is_none() {
-                    self.nodes.retry_at[child as usize] = 2 * within.len() as u32;
+                    self.nodes.retry_at[child as usize] = (2 * within.len() as u32).max(4);
                 }
                 stack.push((child, range.start + within.start..range.start + within.end, level + 1, plane));
             }

@@ -71,8 +71,8 @@ pub struct TreeConfig {
     /// Objects that the bulk build leaves in a leaf, at most, where they can be separated. A leaf
     /// that grows past four times as many is built anew.
     pub bulk_leaf: u32,
-    /// Frames that a node waits after it split before it may merge again. 0: the published rule,
-    /// which oscillates.
+    /// Frames that a node waits after a split before it may merge, and after a merge before it may
+    /// split. 0: the published rule, which oscillates.
     pub cooldown: u32,
     /// Whether a merge is refused that would make a leaf fit to split again.
     pub merge_below_split: bool,
@@ -168,7 +168,11 @@ impl TreeConfig {
             Dial::choice("tight_boxes", self.tight_boxes, TIGHT_BOXES, "when questions use tight boxes"),
             Dial::new("settle_frames", self.settle_frames, "frames without movement until a node is settled"),
             Dial::new("bulk_leaf", self.bulk_leaf, "objects a leaf that the bulk build aims at"),
-            Dial::new("cooldown", self.cooldown, "frames from a split to the earliest merge"),
+            Dial::new(
+                "cooldown",
+                self.cooldown,
+                "frames from a split to the earliest merge, and the reverse",
+            ),
             Dial::new("merge_below_split", self.merge_below_split, "refuse merges that could split again"),
             Dial::new("budget", self.budget, "splits and merges a frame, at most"),
             Dial::new("idle_frames", self.idle_frames, "frames without evidence until small leaves merge"),

@@ -53,7 +53,8 @@ impl Role {
     pub(crate) const CHILDREN: [Self; 3] = [Self::Low, Self::High, Self::Straddle];
 }
 
-/// The last votes about a node: the greatest visible share that any view saw, and when.
+/// The last votes about a node: the greatest visible share that any view of one adaptation saw,
+/// and when; 0 for never.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Evidence {
     pub(crate) ratio: f32,
@@ -82,12 +83,13 @@ pub(crate) struct Nodes {
     pub(crate) identity: Vec<u32>,
     /// Content epoch: counts the updates in which an object entered, or moved in, the subtree.
     pub(crate) epoch: Vec<u32>,
-    /// The update in which something below last moved, entered or left.
+    /// The update in which something below last moved or entered.
     pub(crate) moved_at: Vec<u32>,
     /// The update in which the node last split, or was merged; 0 for never.
     pub(crate) changed_at: Vec<u32>,
     pub(crate) evidence: Vec<Evidence>,
-    /// The number of objects from which a split is tried again, after one that separated nothing.
+    /// The number of objects from which a split is tried again, after one that separated nothing;
+    /// it falls with every move.
     pub(crate) retry_at: Vec<u32>,
     pub(crate) dirty: Vec<u8>,
     free: Vec<u32>,

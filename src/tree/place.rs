@@ -29,6 +29,10 @@ impl Tree {
         self.touch(node, REFIT | CONTENT);
         if !self.stays(node, aabb) {
             self.leavers.push(slot);
+        } else if self.nodes.retry_at[node as usize] > 0 {
+            // What could not be separated may be by now: every move brings the next try nearer.
+            self.nodes.retry_at[node as usize] -= 1;
+            self.note_crowded(node);
         }
     }
 
@@ -55,7 +59,7 @@ impl Tree {
             // none to follow, so the climb is done before.
             let mut at = node;
             loop {
-                self.nodes.below[at as usize] -= 1;
+                self.count_out(at);
                 let parent = self.nodes.parent[at as usize];
                 if parent == NONE {
                     self.hold_in_root(&aabb);
@@ -97,10 +101,15 @@ impl Tree {
         }
         self.blocks.push(&mut self.nodes.run[at as usize], at, slot, aabb);
         self.touch(at, REFIT | CONTENT);
-        let leaf = self.nodes.is_leaf(at);
-        let limit = 4 * self.config.bulk_leaf;
-        if leaf && self.nodes.run[at as usize].len == limit.max(self.nodes.retry_at[at as usize]) {
-            self.crowded.push(at);
+        self.note_crowded(at);
+    }
+
+    /// Lists a leaf for the next build when it has grown to the size from which one is tried.
+    fn note_crowded(&mut self, node: u32) {
+        let limit = self.config.bulk_leaf.max(1).saturating_mul(4);
+        let from = limit.max(self.nodes.retry_at[node as usize]);
+        if self.nodes.is_leaf(node) && self.nodes.run[node as usize].len == from {
+            self.crowded.push(node);
         }
     }
 
@@ -108,15 +117,20 @@ impl Tree {
     fn take(&mut self, node: u32, slot: u32) {
         self.blocks.remove(&mut self.nodes.run[node as usize], node, slot);
         self.touch(node, REFIT);
-        if self.nodes.run[node as usize].len == 0 && self.nodes.parent[node as usize] != NONE {
-            self.thinned.push(self.nodes.parent[node as usize]);
-        }
     }
 
     fn leave_upward(&mut self, mut node: u32) {
         while node != NONE {
-            self.nodes.below[node as usize] -= 1;
+            self.count_out(node);
             node = self.nodes.parent[node as usize];
+        }
+    }
+
+    /// One object less below a node. An inner node with at most one is superfluous.
+    fn count_out(&mut self, node: u32) {
+        self.nodes.below[node as usize] -= 1;
+        if self.nodes.below[node as usize] <= 1 && !self.nodes.is_leaf(node) {
+            self.thinned.push(node);
         }
     }
 
@@ -134,24 +148,30 @@ impl Tree {
     }
 
     /// Makes the root's cell hold a box. A root leaf simply takes a larger cell; an inner root
-    /// becomes a half of one twice as large, as often as it takes: O(log(distance / size)).
+    /// becomes a half of one twice as large, as often as it takes. O(log(distance / size)), and
+    /// O(nodes) if it grows at all: their depths change.
     fn hold_in_root(&mut self, aabb: &Aabb) {
         if self.nodes.is_leaf(0) {
             self.nodes.cell[0] = self.nodes.cell[0].union(aabb);
             return;
         }
+        let mut wrapped = Vec::new();
         for axis in 0..3 {
             while aabb.max[axis] > self.nodes.cell[0].max[axis] {
-                self.grow_root(axis, Role::High);
+                wrapped.push(self.grow_root(axis, Role::High));
             }
             while aabb.min[axis] < self.nodes.cell[0].min[axis] {
-                self.grow_root(axis, Role::Low);
+                wrapped.push(self.grow_root(axis, Role::Low));
             }
+        }
+        if !wrapped.is_empty() {
+            self.reorder(wrapped);
         }
     }
 
-    /// Doubles the root's cell on one axis, toward `new`: the half that is added.
-    fn grow_root(&mut self, axis: usize, new: Role) {
+    /// Doubles the root's cell on one axis, toward `new`: the half that is added. Returns the node
+    /// that the root's content went to.
+    fn grow_root(&mut self, axis: usize, new: Role) -> u32 {
         let old = self.nodes.cell[0];
         // A flat root could not grow by doubling; the square root keeps the step finite at the
         // far end of f32, where doubling would be infinite.
@@ -167,14 +187,14 @@ impl Tree {
                 old.min[axis]
             }
         };
-        self.wrap_root(cell, axis, plane, new);
+        self.wrap_root(cell, axis, plane, new)
     }
 
     /// Puts the root's content into the half of a new root that is not `new`.
-    fn wrap_root(&mut self, cell: Aabb, axis: usize, plane: f32, new: Role) {
+    fn wrap_root(&mut self, cell: Aabb, axis: usize, plane: f32, new: Role) -> u32 {
         let from = self.nodes.id(0);
         // A node aside takes the content while index 0 is made anew around it.
-        let (inner_cell, depth_below) = (self.nodes.cell[0], self.nodes.depth[0] + 1);
+        let inner_cell = self.nodes.cell[0];
         let (child_of_old, changed_at) = (self.nodes.child[0], self.nodes.changed_at[0]);
         let (old_axis, old_plane) = (self.nodes.axis[0], self.nodes.plane[0]);
         self.nodes.child[0] = NONE;
@@ -207,15 +227,16 @@ impl Tree {
         }
         self.nodes.cell[far as usize] = half;
         self.nodes.cell[first as usize + 2] = cell;
-        self.redepth(to, depth_below);
         self.log.push(Edit::Moved { from, to: self.nodes.id(to) });
-        self.redirty();
+        to
     }
 
     /// If the root's objects all lie in one inner half, that half becomes the root: a world that
     /// has shrunk does not keep the depth that it grew. O(nodes below), for their depths.
     pub(super) fn shrink_root(&mut self) {
+        let mut shrunk = false;
         while let Some(heir) = self.sole_heir() {
+            shrunk = true;
             let from = self.nodes.id(heir);
             let first = self.nodes.child[0];
             let cell = self.nodes.cell[heir as usize];
@@ -225,9 +246,10 @@ impl Tree {
             self.nodes.cell[0] = cell;
             self.nodes.identity[0] = identity;
             self.nodes.free_triple(first);
-            self.redepth(0, 0);
             self.log.push(Edit::Moved { from, to: self.nodes.id(0) });
-            self.redirty();
+        }
+        if shrunk {
+            self.reorder(Vec::new());
         }
     }
 
@@ -241,18 +263,17 @@ impl Tree {
         (all && half && others_are_leaves && !self.nodes.is_leaf(heir)).then_some(heir)
     }
 
-    fn redepth(&mut self, top: u32, depth: u16) {
-        let mut stack = vec![(top, depth)];
+    /// After indices near the root have changed: takes every node's depth anew, and lists the
+    /// dirty ones by it.
+    fn reorder(&mut self, wrapped: Vec<u32>) {
+        let mut stack = vec![(0, 0)];
         while let Some((node, depth)) = stack.pop() {
             self.nodes.depth[node as usize] = depth;
             stack.extend(self.nodes.children(node).map(|c| (c, depth + 1)));
         }
-    }
-
-    /// Rebuilds the lists of dirty nodes after depths or indices have changed.
-    fn redirty(&mut self) {
         let mut listed: Vec<u32> = self.dirty.iter_mut().flat_map(std::mem::take).collect();
         // Index 0 and the node that took its content may each be the dirty one: both refit.
+        listed.extend(wrapped);
         listed.extend(self.nodes.children(0));
         listed.push(0);
         for node in listed {

@@ -6,7 +6,7 @@ use super::node::NodeId;
 use crate::geom::Aabb;
 
 impl Tree {
-    /// Whether nothing in or below a node has moved, entered or left for `settle_frames` updates.
+    /// Whether nothing in or below a node has moved or entered for `settle_frames` updates.
     pub fn is_settled(&self, node: NodeId) -> bool {
         self.tick.wrapping_sub(self.nodes.moved_at[node.index()]) >= self.config.settle_frames
     }
