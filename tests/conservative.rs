@@ -19,22 +19,24 @@ use tercet::worlds::{self, Model, Pathology};
 const FRAMES: u32 = 24;
 const SCREEN: Viewport = Viewport::new(160, 90);
 
-/// The least share that a policy culls of what is hidden inside the frustum; None for those that
-/// cull by the frustum alone. With a cut every six frames and a fifth of the world changing, the
-/// baseline's skipped questions and its straddlers cost it most of what it could cull.
-fn least_culled(name: &str) -> Option<f64> {
-    match name {
-        "none" | "frustum" => None,
-        "statistical" => Some(0.05),
-        _ => Some(0.5),
-    }
+/// Policies that cull what is hidden, not only what is outside the frustum.
+fn culls_hidden(name: &str) -> bool {
+    !matches!(name, "none" | "frustum")
 }
 
-fn assert_culls(name: &str, outcome: Outcome) {
+/// Whether a seed stands for the default tree and the default dials; see [`trees`], [`dialled`].
+fn is_default(seed: u64) -> bool {
+    seed.is_multiple_of(12)
+}
+
+/// By default a policy culls most of what is hidden inside the frustum, although a fifth of the
+/// world changes every frame and the camera cuts every sixth. The baseline's skipped questions
+/// cost it much of that.
+fn assert_culls_most(name: &str, outcome: Outcome) {
+    let least = if name == "statistical" { 0.4 } else { 0.55 };
     let share = outcome.culled as f64 / outcome.hidden as f64;
-    if let Some(least) = least_culled(name) {
-        assert!(share > least, "{name} culled only {share:.2} of what was hidden: {outcome:?}");
-    }
+    println!("{name}: {share:.3} of what was hidden was culled");
+    assert!(share > least, "{name} culled only {share:.2} of what was hidden: {outcome:?}");
 }
 
 /// The trees that the suites run on, in turn: the presets and the corners of their dials.
@@ -80,12 +82,18 @@ fn random_worlds() {
             assert_eq!(outcome.lost, 0, "{name} lost an object in random world {seed}");
             outcome
         });
-        let all = outcomes.reduce(Outcome::default, |mut a, b| {
-            a.add(b);
-            a
-        });
+        let outcomes: Vec<Outcome> = outcomes.collect();
+        let sum = |seeds: &mut dyn Iterator<Item = &u64>| {
+            let mut all = Outcome::default();
+            seeds.for_each(|&seed| all.add(outcomes[seed as usize]));
+            all
+        };
+        let all = sum(&mut seeds.iter());
         assert!(all.hidden > 10_000 && all.visible > 5_000, "the worlds have things to hide: {all:?}");
-        assert_culls(name, all);
+        if culls_hidden(name) {
+            assert!(all.culled > 0, "{name} culled nothing that was hidden: {all:?}");
+            assert_culls_most(name, sum(&mut seeds.iter().filter(|&&seed| is_default(seed))));
+        }
     }
 }
 
@@ -100,7 +108,7 @@ fn pathological_worlds() {
                 all.add(outcome);
             }
         }
-        if least_culled(name).is_some() {
+        if culls_hidden(name) {
             assert!(all.culled > 0, "{name} culled nothing that was hidden: {all:?}");
         }
     }
@@ -114,13 +122,15 @@ fn the_plant_with_bunnies() {
         .map(|&name| {
             let mut model = worlds::power_plant(3, 0.1);
             scatter(&mut model, &bunny);
-            let outcome = outcome(name, model, 5);
+            let outcome = outcome(name, model, 12);
             assert_eq!(outcome.lost, 0, "{name} lost an object in the plant");
             (name, outcome)
         })
         .collect();
     for (name, outcome) in outcomes {
-        assert_culls(name, outcome);
+        if culls_hidden(name) {
+            assert_culls_most(name, outcome);
+        }
     }
 }
 
