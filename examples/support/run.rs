@@ -77,6 +77,9 @@ impl Run {
             viewport: [flags.size.0, flags.size.1],
             seed: flags.seed,
         };
+        // Now, not after a long run: where would its figures go?
+        let out = flags.out();
+        fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
         println!(
             "{scene_name}: {} objects, {} triangles; policy {}, {} frames",
             table::count(objects as f64),
@@ -106,7 +109,7 @@ impl Run {
     }
 
     /// How far the camera's flight has got, 0 to 1; None when the run is over.
-    pub fn next(&mut self) -> Option<f32> {
+    pub fn next_frame(&mut self) -> Option<f32> {
         let (done, all) = (self.records.len() as u32, self.flags.frames);
         (done < all).then(|| self.flight_end * done as f32 / (all - 1).max(1) as f32)
     }
@@ -161,7 +164,6 @@ impl Run {
         let view = self.view.as_ref().context("the run is not complete: no frame was measured")?;
         let taken = self.started.elapsed();
         let out = self.flags.out();
-        fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
         let summary = Summary::new(self.setting.clone(), self.tree(scene), &self.records);
         report::write(&out, &summary, &self.records)?;
         plots::write(&out, &summary, &self.records)?;
