@@ -40,7 +40,7 @@ fn main() -> anyhow::Result<()> {
 
     let mut run = Run::new(&flags, &name(&flags), &world)?;
     let painter = run.painter();
-    while let Some(t) = run.next_frame() {
+    while let Some(t) = run.advance() {
         // The world goes its own way.
         if !flags.still {
             swarm.step(&mut world, Swarm::STEP);

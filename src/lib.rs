@@ -1,4 +1,68 @@
 //! Tercet: a dynamic-scene occlusion-culling engine.
+//!
+//! Hand it a world of moving objects and a camera, and it answers, every frame, *what must be
+//! drawn?* By default it never drops an object that owns a sample of the finished frame.
+//!
+//! # A frame, in the order of the folders
+//!
+//! ```text
+//! hecs World ──sync──▶ scene ──▶ tree ──▶ policy ──▶ query ──▶ draw
+//!                     what is    where    what to    is it     what the
+//!                                it is    ask        hidden?   app sees
+//!                                  ▲                   │
+//!                                  └─ adapt ◀─ votes ◀─┘  (visible, total) per node, per view
+//! ```
+//!
+//! 1. [`scene`] mirrors the app's world: spawned, moved and despawned bounds become edits.
+//! 2. [`tree`]: the ternary tree places objects, refits boxes, splits and merges.
+//! 3. [`policy`]: one paper each, a pure state machine: draw this, ask that, wait, done.
+//! 4. [`query`]: a backend owns the frame's depth and answers.
+//! 5. [`draw`]: what the demos and tests draw with; an app brings its own closure.
+//!
+//! [`Culler::frame`] ties them; `src/culler.rs` is the file to read first.
+//!
+//! # The minimal program
+//!
+//! ```
+//! use glam::Vec3;
+//! use tercet::geom::{Aabb, View, Viewport};
+//! use tercet::policy::DualQuery;
+//! use tercet::query::software::SoftwareQueries;
+//! use tercet::scene::{Bounds, Scene, SceneConfig};
+//! use tercet::{Culler, Error};
+//!
+//! fn main() -> Result<(), Error> {
+//!     let mut world = hecs::World::new();
+//!     world.spawn((Bounds(Aabb::from_center(Vec3::ZERO, Vec3::ONE)),));
+//!
+//!     let mut scene = Scene::new(SceneConfig::default()); // where things are: one a world
+//!     let mut eye = Culler::new(DualQuery::default()); // what one camera sees
+//!     let mut queries = SoftwareQueries::new(); // who answers
+//!
+//!     let view = View::look_at(Vec3::Z * 5.0, Vec3::ZERO, 60.0, 0.1, Viewport::new(320, 180))?;
+//!     scene.sync(&world);
+//!     eye.frame(&scene, &view, &mut queries, |_pass, objects| {
+//!         for object in objects {
+//!             println!("draw {:?}", object.entity()); // the app's own renderer
+//!         }
+//!     })?;
+//!     scene.adapt([&mut eye]);
+//!     assert_eq!(eye.visible().len(), 1);
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # Algorithms
+//!
+//! | algorithm | file | source |
+//! |---|---|---|
+//! | adaptive ternary tree, tight boxes, votes | `tree/` | Kovalčík and Tobola 2005 |
+//! | dual query, overlap-ordered waves | `policy/dual_query.rs`, `policy/order.rs` | Kovalčík and Tobola 2005 |
+//! | statistically optimised queries | `policy/statistical.rs` | Kovalčík and Sochor 2005 |
+//! | stop-and-wait, OPT, REF | `policy/stop_and_wait.rs`, `policy/recorded.rs` | Bittner et al. 2004, Mattausch et al. 2008, Lee et al. 2021 |
+//! | conservative box proxy | `geom/proxy.rs` | its proof is in the module |
+//! | exact software rasteriser and counts | `query/software/` | |
+//! | exact visible set (item buffer) | `query/oracle.rs` | |
 
 #![warn(unreachable_pub)]
 
@@ -21,3 +85,8 @@ pub use dial::Dial;
 pub use error::Error;
 pub use stats::FrameStats;
 pub use tradeoff::Tradeoff;
+
+/// The README's program compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

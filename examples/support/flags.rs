@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, ValueEnum};
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
 use tercet::policy::{self, Policy};
@@ -75,6 +75,10 @@ pub struct Flags {
     pub example: &'static str,
 }
 
+/// An example without flags of its own.
+#[derive(Args)]
+pub struct NoMore {}
+
 /// What `--backend` takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
@@ -89,14 +93,21 @@ pub enum Backend {
 impl Flags {
     /// Reads the command line. Prints help, or what is wrong with a flag, and exits.
     pub fn parse(example: &'static str, about: &'static str) -> Self {
+        Self::parse_with::<NoMore>(example, about).0
+    }
+
+    /// As [`Flags::parse`], with flags of the example's own.
+    pub fn parse_with<More: Args>(example: &'static str, about: &'static str) -> (Self, More) {
         let command = Self::command().name(example).about(about).after_long_help(catalogue(example));
+        let command = More::augment_args(command);
         let matches = command.clone().get_matches();
         let mut flags = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+        let more = More::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         flags.example = example;
         if let Err(error) = flags.check() {
             command.clone().error(ErrorKind::InvalidValue, error).exit();
         }
-        flags
+        (flags, more)
     }
 
     /// The policy, its dials set.

@@ -11,8 +11,11 @@ use super::report::{FrameRecord, Summary, percentile};
 
 const SIZE: (u32, u32) = (1200, 620);
 
+/// A stage of the frame: its name, its colour, and its time in milliseconds.
+type Stage = (&'static str, RGBColor, fn(&FrameRecord) -> f64);
+
 /// The stages of a frame, in the order in which they are stacked.
-const STAGES: [(&str, RGBColor, fn(&FrameRecord) -> f64); 6] = [
+const STAGES: [Stage; 6] = [
     ("draw", RGBColor(76, 120, 168), |f| f.draw_ms),
     ("query", RGBColor(114, 183, 178), |f| f.query_ms),
     ("wait", RGBColor(238, 202, 59), |f| f.wait_ms),

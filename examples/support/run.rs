@@ -109,7 +109,7 @@ impl Run {
     }
 
     /// How far the camera's flight has got, 0 to 1; None when the run is over.
-    pub fn next_frame(&mut self) -> Option<f32> {
+    pub fn advance(&mut self) -> Option<f32> {
         let (done, all) = (self.records.len() as u32, self.flags.frames);
         (done < all).then(|| self.flight_end * done as f32 / (all - 1).max(1) as f32)
     }

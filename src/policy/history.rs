@@ -90,3 +90,98 @@ fn recall(states: &[NodeState], node: NodeId) -> NodeState {
     let known = states.get(node.index()).filter(|s| s.identity == node.identity());
     known.copied().unwrap_or(NodeState { identity: node.identity(), ..NodeState::default() })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::Aabb;
+    use crate::tree::{Straddlers, TreeConfig, Votes};
+    use glam::Vec3;
+
+    fn votes(tree: &Tree, visible: u32) -> Votes {
+        let leaves = tree.nodes().filter(|n| n.is_leaf).map(|n| n.id);
+        let mut votes = Votes { forward: Vec3::X, votes: Vec::new() };
+        leaves.for_each(|leaf| votes.count(leaf, visible, 100));
+        votes
+    }
+
+    fn row(config: TreeConfig) -> Tree {
+        let mut tree = Tree::new(config);
+        for i in 0..4 {
+            let center = Vec3::new(10.0 * i as f32, 0.0, 0.0);
+            tree.insert(i, &Aabb::from_center(center, Vec3::ONE));
+        }
+        tree.update();
+        tree
+    }
+
+    #[test]
+    fn memories_go_down_with_a_split_and_up_with_a_merge() {
+        let config = TreeConfig {
+            o_split: 4,
+            bulk_leaf: 8,
+            o_merge: 8,
+            cooldown: 0,
+            merge_below_split: false,
+            straddlers: Straddlers::Leaf,
+            ..TreeConfig::stable()
+        };
+        let mut tree = row(config);
+        let mut history = History::default();
+        history.follow(&tree);
+        let root = tree.root();
+        *history.entry(root) = NodeState { frame: 7, visible: true, streak: 3, ..history.get(root) };
+
+        tree.adapt([&votes(&tree, 100)].into_iter());
+        history.follow(&tree);
+        let children = tree.children(root).expect("a split root");
+        for child in children {
+            let state = history.get(child);
+            assert_eq!((state.frame, state.visible, state.streak), (7, true, 3));
+        }
+        // One child goes on being visible, the others are found hidden; then all merge.
+        for child in children {
+            history.entry(child).visible = child == children[1];
+        }
+        tree.update();
+        tree.adapt([&votes(&tree, 0)].into_iter());
+        assert!(tree.is_leaf(root));
+        history.follow(&tree);
+        assert!(history.get(root).visible, "visible if one of the three was");
+        let again = tree.root();
+        assert_eq!(again, root, "the root has kept its identity");
+    }
+
+    #[test]
+    fn a_grown_root_leaves_its_memory_to_the_half_that_it_became() {
+        let mut tree = row(TreeConfig { bulk_leaf: 1, ..TreeConfig::stable() });
+        let mut history = History::default();
+        tree.update();
+        history.follow(&tree);
+        let old = tree.root();
+        history.entry(old).frame = 9;
+        tree.insert(99, &Aabb::from_center(Vec3::X * 1e4, Vec3::ONE));
+        tree.update();
+        history.follow(&tree);
+        assert_eq!(history.get(tree.root()).frame, 0, "the root is new");
+        let heirs = tree.nodes().filter(|n| history.get(n.id).frame == 9).count();
+        assert_eq!(heirs, 1);
+    }
+
+    #[test]
+    fn a_view_that_fell_behind_forgets() {
+        let mut tree = row(TreeConfig { bulk_leaf: 1, ..TreeConfig::stable() });
+        let mut history = History::default();
+        history.follow(&tree);
+        history.entry(tree.root()).frame = 5;
+        for round in 0..10_000u32 {
+            let far = Vec3::new(1e5 * (round % 2) as f32, 0.0, 0.0);
+            tree.insert(1000, &Aabb::from_center(far, Vec3::ONE));
+            tree.update();
+            tree.remove(1000);
+            tree.update();
+        }
+        history.follow(&tree);
+        assert_eq!(history.get(tree.root()).frame, 0);
+    }
+}

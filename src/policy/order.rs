@@ -62,3 +62,58 @@ fn tile(pixel: u32, size: u32) -> usize {
     let tile = u64::from(pixel) * ScreenTiles::SIDE as u64 / u64::from(size.max(1));
     (tile as usize).min(ScreenTiles::SIDE - 1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn rect() -> impl Strategy<Value = PixelRect> {
+        (0u32..1000, 0u32..700, 1u32..300, 1u32..300).prop_map(|(x0, y0, w, h)| PixelRect {
+            x0,
+            y0,
+            x1: (x0 + w).min(1000),
+            y1: (y0 + h).min(700),
+        })
+    }
+
+    fn share_a_pixel(a: PixelRect, b: PixelRect) -> bool {
+        a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1
+    }
+
+    proptest! {
+        /// Rectangles that share a pixel always meet; those two tiles apart never do.
+        #[test]
+        fn meeting_is_conservative_and_tight(a in rect(), b in rect()) {
+            let mut tiles = ScreenTiles::new(Viewport::new(1000, 700));
+            prop_assert!(!tiles.cover(a));
+            let meets = tiles.meets(b);
+            prop_assert_eq!(meets, tiles.clone().cover(b));
+            if share_a_pixel(a, b) {
+                prop_assert!(meets);
+            }
+            let wide = PixelRect {
+                x0: a.x0.saturating_sub(32),
+                y0: a.y0.saturating_sub(32),
+                x1: a.x1 + 32,
+                y1: a.y1 + 32,
+            };
+            if !share_a_pixel(wide, b) {
+                prop_assert!(!meets);
+            }
+        }
+    }
+
+    #[test]
+    fn every_viewport_has_its_tiles() {
+        for (width, height) in [(1, 1), (1, 16_384), (63, 65), (16_384, 16_384)] {
+            let mut tiles = ScreenTiles::new(Viewport::new(width, height));
+            let all = PixelRect { x0: 0, y0: 0, x1: width, y1: height };
+            assert!(!tiles.cover(all));
+            let corner = PixelRect { x0: width - 1, y0: height - 1, x1: width, y1: height };
+            assert!(tiles.meets(corner));
+            tiles.clear();
+            assert!(!tiles.meets(all));
+        }
+    }
+}

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::compact::compact;
 use super::mesh::Level;
+use super::nearest::Triangles;
 use crate::Error;
 
 /// A coarser version of a mesh, made of some of its vertices.
@@ -32,7 +33,7 @@ impl Simplified {
 /// Edges collapse as long as they keep the surface's shape. Where that stalls, a simplifier that
 /// merges vertices by grid cells takes over, which always arrives but roughens the surface.
 ///
-/// Takes time: O(vertices × triangles) at worst, for the error is measured.
+/// Takes time: about O(triangles · log triangles) a level, for the error is measured.
 ///
 /// # Errors
 /// [`Error::Mesh`] when there are no vertices, the indices are not whole triangles, or an index
@@ -78,54 +79,13 @@ fn simplify(indices: &[u32], vertices: &VertexDataAdapter<'_>, target: usize) ->
 /// The distance of the point that lies farthest from a mesh, in metres. Vertices that the finest
 /// level has and no triangle uses are taken along: they can only make the error larger.
 fn farthest(points: &[Vec3], indices: &[u32]) -> f32 {
-    let triangles: Vec<Triangle> = indices
-        .chunks_exact(3)
-        .map(|t| Triangle::new(t.iter().map(|&i| points[i as usize]).collect::<Vec<_>>().as_slice()))
-        .collect();
-    points.par_iter().map(|&p| nearest(p, &triangles)).reduce(|| 0.0, f32::max)
-}
-
-fn nearest(p: Vec3, triangles: &[Triangle]) -> f32 {
-    triangles.iter().fold(f32::MAX, |best, triangle| {
-        // A ball around each triangle spares the exact distance for most of them.
-        let beyond = p.distance(triangle.center) - triangle.radius;
-        if beyond >= best { best } else { best.min(triangle.distance(p)) }
-    })
-}
-
-struct Triangle {
-    corners: [Vec3; 3],
-    center: Vec3,
-    radius: f32,
-}
-
-impl Triangle {
-    fn new(corners: &[Vec3]) -> Self {
-        let corners = [corners[0], corners[1], corners[2]];
-        let center = (corners[0] + corners[1] + corners[2]) / 3.0;
-        let radius = corners.iter().map(|c| c.distance(center)).fold(0.0, f32::max);
-        Self { corners, center, radius }
-    }
-
-    /// To the plane where the point lies above the triangle, else to the nearest edge.
-    fn distance(&self, p: Vec3) -> f32 {
-        let [a, b, c] = self.corners;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let above = |a: Vec3, b: Vec3| (b - a).cross(p - a).dot(normal) >= 0.0;
-        if normal != Vec3::ZERO && above(a, b) && above(b, c) && above(c, a) {
-            return (p - a).dot(normal).abs();
-        }
-        let edge = |a: Vec3, b: Vec3| {
-            let along = b - a;
-            let t = ((p - a).dot(along) / along.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
-            p.distance(a + along * t)
-        };
-        edge(a, b).min(edge(b, c)).min(edge(c, a))
-    }
+    let triangles = Triangles::new(points, indices);
+    points.par_iter().map(|&p| triangles.distance(p)).reduce(|| 0.0, f32::max)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::nearest::Triangle;
     use super::*;
 
     /// A wavy sheet of n × n cells.
@@ -151,11 +111,11 @@ mod tests {
             let fewer = level.indices.len() / 3;
             assert!(fewer <= triangles * 5 / 8, "{triangles} to {fewer}");
             triangles = fewer;
-            // Measured here without the ball around each triangle.
+            // Measured here by looking at each triangle.
             let all: Vec<Triangle> = level
                 .indices
                 .chunks_exact(3)
-                .map(|t| Triangle::new(&[0, 1, 2].map(|k| positions[t[k] as usize])))
+                .map(|t| Triangle([0, 1, 2].map(|k| positions[t[k] as usize])))
                 .collect();
             let nearest = |p: &Vec3| all.iter().map(|t| t.distance(*p)).fold(f32::MAX, f32::min);
             assert!(positions.iter().all(|p| nearest(p) <= level.error * 1.0001));
@@ -172,21 +132,5 @@ mod tests {
         assert!(generate(&positions, &indices[..4], 1).unwrap_err().to_string().contains("4 indices"));
         indices[5] = 99;
         assert!(generate(&positions, &indices, 1).unwrap_err().to_string().contains("index 5 is 99"));
-    }
-
-    #[test]
-    fn distance_to_a_triangle() {
-        let triangle = Triangle::new(&[Vec3::ZERO, Vec3::X, Vec3::Y]);
-        let cases = [
-            (Vec3::new(0.2, 0.2, 3.0), 3.0),
-            (Vec3::new(-3.0, -4.0, 0.0), 5.0),
-            (Vec3::new(0.5, -2.0, 0.0), 2.0),
-            (Vec3::new(1.0, 1.0, 0.0), 0.5f32.sqrt()),
-        ];
-        for (p, expected) in cases {
-            assert!((triangle.distance(p) - expected).abs() < 1e-6, "{p}");
-        }
-        let sliver = Triangle::new(&[Vec3::ZERO, Vec3::X, Vec3::X * 2.0]);
-        assert_eq!(sliver.distance(Vec3::new(1.0, 2.0, 0.0)), 2.0);
     }
 }

@@ -16,6 +16,8 @@ pub mod import;
 #[cfg(feature = "lod")]
 pub mod lod;
 pub mod mesh;
+#[cfg(feature = "lod")]
+mod nearest;
 mod object;
 mod objects;
 mod sync;

@@ -17,10 +17,13 @@
 //! | `primitive` | triangles of one primitive |
 //! | `nodes`, `instancing` | where things stand |
 //! | `material` | colour, and what is see-through |
+//! | `levels` | coarser levels, behind the feature `lod` |
 
 mod accessor;
 mod file;
 mod instancing;
+#[cfg(feature = "lod")]
+mod levels;
 mod material;
 mod nodes;
 mod primitive;

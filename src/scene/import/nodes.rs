@@ -1,7 +1,7 @@
 //! The node graph: a forest, walked without recursion, its transforms multiplied in f64.
 
 use glam::{DAffine3, DMat4, DQuat, DVec3};
-use gltf::json::{Index, Node, Root, Scene};
+use gltf::json::{Index, Node, Root, Scene, Value};
 
 use super::file::{File, get};
 use super::instancing;
@@ -22,6 +22,7 @@ pub(super) fn places(file: &File, report: &mut ImportReport) -> Result<Vec<Place
     let root = &file.root;
     let parents = parents(root)?;
     let roots = roots(root, &parents, report)?;
+    let stands_for = coarser_levels(root)?;
     let mut places = Vec::new();
     let mut stack: Vec<(usize, DAffine3)> = roots.iter().rev().map(|&n| (n, DAffine3::IDENTITY)).collect();
     while let Some((n, world_from_parent)) = stack.pop() {
@@ -29,7 +30,9 @@ pub(super) fn places(file: &File, report: &mut ImportReport) -> Result<Vec<Place
         let in_node = |why: String| format!("{}: {why}", name(root, n));
         let world_from_node = world_from_parent * local(node).map_err(in_node)?;
         report.nodes += 1;
-        if let Some(mesh) = node.mesh {
+        if let Some(finer) = stands_for[n] {
+            report.skip(name(root, n), format!("it is a coarser level of {}", name(root, finer)));
+        } else if let Some(mesh) = node.mesh {
             get(&root.meshes, mesh, "mesh").map_err(in_node)?;
             if node.skin.is_some() {
                 report.alter(name(root, n), "its skin is not applied: it stands as it was modelled");
@@ -79,6 +82,20 @@ fn parents(root: &Root) -> Result<Vec<usize>, String> {
             Err(format!("{} is its own ancestor", name(root, in_ring)))
         }
     }
+}
+
+/// Which node each node is a coarser level of, as `MSFT_lod` says: it is not shown beside it.
+fn coarser_levels(root: &Root) -> Result<Vec<Option<usize>>, String> {
+    let mut stands_for = vec![None; root.nodes.len()];
+    for (n, node) in root.nodes.iter().enumerate() {
+        let Some(lod) = node.extensions.as_ref().and_then(|e| e.others.get("MSFT_lod")) else { continue };
+        for id in lod.get("ids").and_then(Value::as_array).into_iter().flatten() {
+            let coarser = id.as_u64().and_then(|id| stands_for.get_mut(usize::try_from(id).ok()?));
+            *coarser.ok_or_else(|| format!("{}: MSFT_lod: node {id} does not exist", name(root, n)))? =
+                Some(n);
+        }
+    }
+    Ok(stands_for)
 }
 
 /// The roots of the scene that is shown.
