@@ -79,9 +79,10 @@ fn main() -> anyhow::Result<()> {
 
 /// The world in words, for the report.
 fn name(flags: &Flags) -> String {
-    match (flags.objects, flags.still) {
-        (0, _) => "power plant alone".to_owned(),
-        (n, false) => format!("power plant + {n} moving bunnies"),
-        (n, true) => format!("power plant + {n} static bunnies"),
+    let manner = if flags.still { "static" } else { "moving" };
+    match flags.objects {
+        0 => "power plant alone".to_owned(),
+        1 => format!("power plant + 1 {manner} bunny"),
+        n => format!("power plant + {n} {manner} bunnies"),
     }
 }

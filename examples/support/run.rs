@@ -77,6 +77,9 @@ impl Run {
             viewport: [flags.size.0, flags.size.1],
             seed: flags.seed,
         };
+        // Now, not after a long run: where would its figures go?
+        let out = flags.out();
+        fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
         println!(
             "{scene_name}: {} objects, {} triangles; policy {}, {} frames",
             table::count(objects as f64),
@@ -161,7 +164,6 @@ impl Run {
         let view = self.view.as_ref().context("the run is not complete: no frame was measured")?;
         let taken = self.started.elapsed();
         let out = self.flags.out();
-        fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
         let summary = Summary::new(self.setting.clone(), self.tree(scene), &self.records);
         report::write(&out, &summary, &self.records)?;
         plots::write(&out, &summary, &self.records)?;

@@ -19,7 +19,7 @@ pub fn table(summary: &Summary) -> Table {
 fn rows(s: &Summary) -> Vec<(&'static str, String)> {
     let [width, height] = s.viewport;
     let (f, t) = (&s.frame_ms, &s.stage_ms);
-    let saved = 100.0 * (1.0 - s.drawn.mean / s.in_frustum.mean.max(1.0));
+    let saved = 100.0 * (1.0 - s.drawn.mean / s.in_frustum.mean.max(1.0)).max(0.0);
     let mut rows = vec![
         ("scene", format!("{}, seed {}", s.scene, s.seed)),
         ("", format!("{} objects, {} triangles", count(s.objects as f64), count(s.triangles as f64))),
