@@ -75,6 +75,7 @@ impl Tree {
                 break;
             }
             if let Some(parent) = self.mergeable_parent(vote.node) {
+                self.count_flip(self.nodes.changed_at[parent as usize]);
                 self.merge(parent);
                 merges -= 1;
             }
@@ -83,7 +84,8 @@ impl Tree {
         self.refit();
     }
 
-    /// Merges inner nodes that hold at most one object any more, whoever sees them.
+    /// Merges inner nodes that hold at most one object any more, whoever sees them. That follows
+    /// the objects, not the votes, and is no flip.
     pub(super) fn collapse_thinned(&mut self) {
         while let Some(node) = self.thinned.pop() {
             let few = self.nodes.is_alive(node) && self.nodes.below[node as usize] <= 1;
@@ -164,7 +166,6 @@ impl Tree {
 
     /// Makes a leaf of an inner node whose children are leaves.
     fn merge(&mut self, parent: u32) {
-        self.count_flip(self.nodes.changed_at[parent as usize]);
         let children = self.nodes.child[parent as usize];
         let ids = [0, 1, 2].map(|i| self.nodes.id(children + i));
         let mut run = self.nodes.run[parent as usize];

@@ -44,7 +44,7 @@ pub struct TreeStats {
     pub merges: u64,
     /// Objects that changed their node.
     pub moves: u64,
-    /// Splits and merges that undid one another within [`Tree::FLIP_FRAMES`].
+    /// Votes that undid a split or merge of less than [`Tree::FLIP_FRAMES`] ago.
     pub flips: u64,
 }
 
