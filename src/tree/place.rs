@@ -55,8 +55,7 @@ impl Tree {
                 continue;
             }
             self.take(node, slot);
-            // Growing the root may give this node's content another index; an emptied run has
-            // none to follow, so the climb is done before.
+            // The climb ends before the root grows: growing gives the root's content another index.
             let mut at = node;
             loop {
                 self.count_out(at);
@@ -193,7 +192,7 @@ impl Tree {
     /// Puts the root's content into the half of a new root that is not `new`.
     fn wrap_root(&mut self, cell: Aabb, axis: usize, plane: f32, new: Role) -> u32 {
         let from = self.nodes.id(0);
-        // A node aside takes the content while index 0 is made anew around it.
+        // Splitting writes the new plane over the root's own, which its heir is still to get.
         let inner_cell = self.nodes.cell[0];
         let (child_of_old, changed_at) = (self.nodes.child[0], self.nodes.changed_at[0]);
         let (old_axis, old_plane) = (self.nodes.axis[0], self.nodes.plane[0]);
