@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::error::ErrorKind;
-use clap::{Args, CommandFactory, FromArgMatches, Parser, ValueEnum};
+use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, ValueEnum};
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
 use tercet::policy::{self, Policy};
@@ -34,7 +34,7 @@ pub struct Flags {
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     pub size: (u32, u32),
 
-    /// How many objects move about; 0 leaves the rest of the world alone
+    /// How many objects move about; 0 leaves the rest of the world, if there is any
     #[arg(long, value_name = "N", default_value = "2500")]
     pub objects: usize,
 
@@ -98,8 +98,7 @@ impl Flags {
 
     /// As [`Flags::parse`], with flags of the example's own.
     pub fn parse_with<More: Args>(example: &'static str, about: &'static str) -> (Self, More) {
-        let command = Self::command().name(example).about(about).after_long_help(catalogue(example));
-        let command = More::augment_args(command);
+        let command = command::<More>(example, about);
         let matches = command.clone().get_matches();
         let mut flags = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         let more = More::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
@@ -212,6 +211,12 @@ fn is_own_dial(key: &str) -> bool {
     [MAX_ERROR, FLIGHT_END].iter().any(|dial| dial.key == key)
 }
 
+/// The command with an example's own flags. Its name and purpose come last: adding flags brings
+/// the doc comment of their type along.
+fn command<More: Args>(example: &'static str, about: &'static str) -> Command {
+    More::augment_args(Flags::command()).name(example).about(about).after_long_help(catalogue(example))
+}
+
 /// What stands below the flags in `--help`.
 fn catalogue(example: &str) -> String {
     let run = format!("cargo run --release --example {example}");
@@ -281,7 +286,9 @@ mod tests {
 
     #[test]
     fn the_command_is_well_formed() {
-        Flags::command().after_long_help(catalogue("example")).debug_assert();
+        let command = command::<NoMore>("example", "What it shows.");
+        assert_eq!(command.get_about().map(ToString::to_string).as_deref(), Some("What it shows."));
+        command.debug_assert();
     }
 
     #[test]
