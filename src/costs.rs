@@ -17,7 +17,7 @@ const WEIGHT: f32 = 0.125;
 
 /// A hidden object costs less to draw than the mean of those drawn, which are seen: its samples
 /// fail the depth test. On the demos it is a quarter to two thirds.
-const HIDDEN: f32 = 0.5;
+const HIDDEN: f32 = 1.0;
 
 impl Default for Costs {
     fn default() -> Self {

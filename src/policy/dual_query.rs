@@ -30,7 +30,7 @@
 use std::collections::VecDeque;
 
 use super::front::{Front, FrontQueue};
-use super::skip::Turnover;
+use super::skip::{Seen, Share, Turnover};
 use super::{Action, Context, Extent, History, Policy, ScreenTiles, Skip};
 use crate::Error;
 use crate::dial::{self, Dial};
@@ -176,10 +176,11 @@ impl Policy for DualQuery {
         }
         let visible = answer.is_visible(cx.tradeoff.visible_pixels);
         self.note_turnover(cx, node, visible);
+        let share = Share::of(answer);
         if visible && self.stage == Stage::Drawing {
-            self.found_visible(cx, node, mask);
+            self.found_visible(cx, node, mask, share);
         } else if visible {
-            self.count_streak(cx, node);
+            self.count_streak(cx, node, share);
         } else {
             let state = self.history.entry(node);
             (state.frame, state.visible, state.streak) = (cx.frame, false, 0);
@@ -299,7 +300,7 @@ impl DualQuery {
                 if cx.tree.is_leaf(front.node) {
                     self.votes.near(front.node);
                 }
-                self.found_visible(cx, front.node, front.mask);
+                self.found_visible(cx, front.node, front.mask, Share::default());
                 None
             }
             Question::Ask(proxy) => Some(self.with_proxy(front, proxy)),
@@ -313,8 +314,8 @@ impl DualQuery {
     }
 
     /// An answer, or the near plane, says that a node is visible.
-    fn found_visible(&mut self, cx: &Context<'_>, node: NodeId, mask: PlaneMask) {
-        self.count_streak(cx, node);
+    fn found_visible(&mut self, cx: &Context<'_>, node: NodeId, mask: PlaneMask, share: Share) {
+        self.count_streak(cx, node, share);
         self.take_as_visible(cx, node, mask);
     }
 
@@ -322,16 +323,16 @@ impl DualQuery {
     fn note_turnover(&mut self, cx: &Context<'_>, node: NodeId, visible: bool) {
         let state = self.history.get(node);
         if state.visible && state.asked_at != 0 && cx.tree.is_leaf(node) {
-            self.turnover.note(cx.frame.wrapping_sub(state.asked_at), !visible);
+            self.turnover.note(state.share, cx.frame.wrapping_sub(state.asked_at), !visible);
         }
     }
 
-    fn count_streak(&mut self, cx: &Context<'_>, node: NodeId) {
+    fn count_streak(&mut self, cx: &Context<'_>, node: NodeId, share: Share) {
         let state = self.history.entry(node);
         state.streak = state.streak.saturating_add(1);
-        state.asked_at = cx.frame;
-        let objects = cx.tree.own_count(node);
-        let skip = self.n_skip.frames(node, state.streak, objects, &cx.costs, &self.turnover);
+        (state.asked_at, state.share) = (cx.frame, share);
+        let leaf = Seen { node, objects: cx.tree.own_count(node), streak: state.streak, share };
+        let skip = self.n_skip.frames(leaf, &cx.costs, &self.turnover);
         state.skip_until = cx.frame.saturating_add(skip);
     }
 

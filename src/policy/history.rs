@@ -1,5 +1,6 @@
 //! What a view remembers of nodes, and how memories follow the tree as it splits and merges.
 
+use super::skip::Share;
 use crate::tree::{Edit, NodeId, Tree};
 
 /// What one view remembers of one node.
@@ -15,6 +16,8 @@ pub struct NodeState {
     pub streak: u32,
     /// The frame of the last of them; 0 for never.
     pub asked_at: u32,
+    /// What it said.
+    pub share: Share,
     /// The last frame for which it is taken as visible without asking.
     pub skip_until: u32,
 }

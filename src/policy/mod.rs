@@ -22,7 +22,7 @@ pub use history::{History, NodeState};
 pub use none::DrawAll;
 pub use order::ScreenTiles;
 pub use recorded::{Recorded, Recording};
-pub use skip::Skip;
+pub use skip::{Share, Skip};
 pub use statistical::Statistical;
 pub use stop_and_wait::StopAndWait;
 

@@ -4,11 +4,16 @@
 //! often. Asking about a leaf of `n` objects every `t` frames costs `q / t` a frame, where `q` is
 //! the cost of a question in hidden objects drawn ([`Costs`]). If such a leaf becomes hidden with
 //! probability `p` a frame, it is then drawn in vain for `t / 2` frames on average, which costs
-//! `n p t / 2` a frame. The sum is least at `t = √(2 q / (n p))`. Both `q` and `p` are seen.
+//! `n p t / 2` a frame. The sum is least at `t = √(2 q / (n p))`.
+//!
+//! `q` and `p` are seen. `p` is seen by the *visible share* of the leaf's box, the dual answer: a
+//! leaf of which half is visible will hardly be hidden in the next frame, one of which a hundredth
+//! is visible may well be.
 
 use crate::Error;
 use crate::costs::Costs;
 use crate::dial;
+use crate::query::Answer;
 use crate::tree::NodeId;
 
 /// How many frames a visible leaf goes unasked.
@@ -20,9 +25,19 @@ pub enum Skip {
     AtMost(u32),
 }
 
+/// A leaf of which something was visible, as it was last asked about.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub(super) node: NodeId,
+    pub(super) objects: usize,
+    /// Consecutive visible answers.
+    pub(super) streak: u32,
+    pub(super) share: Share,
+}
+
 impl Skip {
-    /// Frames that [`Skip::Auto`] skips at most. What a vote says must not grow old.
-    const MOST: u32 = 12;
+    /// Frames that [`Skip::Auto`] skips at most.
+    const MOST: u32 = 30;
 
     pub(super) fn parse(key: &str, value: &str) -> Result<Self, Error> {
         match value.trim() {
@@ -38,38 +53,54 @@ impl Skip {
         }
     }
 
-    /// Frames to skip after `streak` consecutive visible answers about a leaf of `objects`.
-    pub(super) fn frames(
-        self,
-        node: NodeId,
-        streak: u32,
-        objects: usize,
-        costs: &Costs,
-        seen: &Turnover,
-    ) -> u32 {
+    /// Frames for which a leaf now goes unasked.
+    pub(super) fn frames(self, leaf: Seen, costs: &Costs, turnover: &Turnover) -> u32 {
         match self {
-            Self::AtMost(n) => streak.min(n),
+            Self::AtMost(n) => leaf.streak.min(n),
             Self::Auto => {
-                let every = (2.0 * costs.question() / (objects.max(1) as f32 * seen.rate())).sqrt();
-                let skip = (every as u32).saturating_sub(1).min(Self::MOST).min(streak);
+                let p = turnover.rate(leaf.share);
+                let every = (2.0 * costs.question() / (leaf.objects.max(1) as f32 * p)).sqrt();
+                // A leaf that has only just become visible may as soon be hidden again.
+                let trust = (1 << leaf.streak.min(5)) - 1;
+                let skip = (every as u32).saturating_sub(1).min(Self::MOST).min(trust);
                 // Leaves that became visible together must not all be asked about together: up to
                 // a third is taken off, by node.
-                skip - (node.index().wrapping_mul(0x9E37_79B1) >> 16) as u32 % (skip / 3 + 1)
+                skip - (leaf.node.index().wrapping_mul(0x9E37_79B1) >> 16) as u32 % (skip / 3 + 1)
             }
         }
     }
 }
 
-/// How often leaves that are visible become hidden, as seen lately.
+/// The visible share of a box, in powers of two: 0 for more than a half, 1 for more than a
+/// quarter, and so on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Share(u8);
+
+impl Share {
+    const COUNT: usize = 8;
+
+    /// Of an answer. A question that was not needed, or went unanswered, counts as wholly visible.
+    pub(super) fn of(answer: Answer<'_>) -> Self {
+        match answer {
+            Answer::Dual { visible, total } if visible > 0 => {
+                Self((total / visible).ilog2().min(Self::COUNT as u32 - 1) as u8)
+            }
+            _ => Self(0),
+        }
+    }
+}
+
+/// How often leaves that are visible become hidden, as seen lately, by the share last seen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turnover {
-    hidden: f32,
-    frames: f32,
+    hidden: [f32; Share::COUNT],
+    frames: [f32; Share::COUNT],
 }
 
 impl Default for Turnover {
+    /// One leaf in eight, after one frame.
     fn default() -> Self {
-        Self { hidden: 1.0, frames: 8.0 }
+        Self { hidden: [1.0; Share::COUNT], frames: [8.0; Share::COUNT] }
     }
 }
 
@@ -79,19 +110,18 @@ impl Turnover {
 
     /// To be called once a frame.
     pub(super) fn fade(&mut self) {
-        self.hidden *= Self::FADE;
-        self.frames *= Self::FADE;
+        self.hidden.iter_mut().chain(&mut self.frames).for_each(|sum| *sum *= Self::FADE);
     }
 
-    /// A leaf that was visible `frames` ago, when last asked about, is `hidden` now, or not.
-    pub(super) fn note(&mut self, frames: u32, hidden: bool) {
-        self.frames += frames.max(1) as f32;
-        self.hidden += f32::from(u8::from(hidden));
+    /// Of a leaf of which `share` was visible `frames` ago, nothing is visible now, or something.
+    pub(super) fn note(&mut self, share: Share, frames: u32, hidden: bool) {
+        self.frames[share.0 as usize] += frames.max(1) as f32;
+        self.hidden[share.0 as usize] += f32::from(u8::from(hidden));
     }
 
-    /// The probability a frame, greater than 0. One more of each has been seen, as it were.
-    fn rate(&self) -> f32 {
-        (self.hidden + 0.125) / (self.frames + 1.0)
+    /// The probability a frame, greater than 0: where nothing has been seen lately, one in eight.
+    fn rate(&self, share: Share) -> f32 {
+        (self.hidden[share.0 as usize] + 0.01) / (self.frames[share.0 as usize] + 0.08)
     }
 }
 
@@ -102,18 +132,18 @@ mod tests {
     use crate::tree::{Tree, TreeConfig};
     use glam::Vec3;
 
-    fn root() -> NodeId {
+    fn leaf(objects: usize, streak: u32) -> Seen {
         let mut tree = Tree::new(TreeConfig::default());
         tree.insert(0, &Aabb::from_center(Vec3::ZERO, Vec3::ONE));
         tree.update();
-        tree.root()
+        Seen { node: tree.root(), objects, streak, share: Share(0) }
     }
 
     fn turnover(hidden: u32, of: u32) -> Turnover {
         let mut seen = Turnover::default();
         for _ in 0..100 {
             seen.fade();
-            (0..of).for_each(|i| seen.note(1, i < hidden));
+            (0..of).for_each(|i| seen.note(Share(0), 1, i < hidden));
         }
         seen
     }
@@ -121,7 +151,7 @@ mod tests {
     #[test]
     fn skips_are_those_of_least_cost() {
         let frames = |objects, question, seen: &Turnover| {
-            Skip::Auto.frames(root(), u32::MAX, objects, &Costs::of(question), seen)
+            Skip::Auto.frames(leaf(objects, u32::MAX), &Costs::of(question), seen)
         };
         // √(2 · 1 / (1 · 0.02)) = 10 frames from question to question; a third may be taken off.
         let rare = turnover(20, 1000);
@@ -133,11 +163,21 @@ mod tests {
     }
 
     #[test]
-    fn a_streak_must_grow_first() {
+    fn what_is_hardly_visible_is_asked_about_more_often() {
+        let mut seen = turnover(0, 1000);
+        let hardly = Share::of(Answer::Dual { visible: 3, total: 1000 });
+        (0..500).for_each(|i| seen.note(hardly, 1, i % 4 == 0));
+        let frames = |share| Skip::Auto.frames(Seen { share, ..leaf(1, 9) }, &Costs::of(1.0), &seen);
+        let wholly = Share::of(Answer::Dual { visible: 900, total: 1000 });
+        assert!(frames(hardly) <= 2 && frames(wholly) >= 20, "{} {}", frames(hardly), frames(wholly));
+    }
+
+    #[test]
+    fn trust_must_grow_first() {
         let (costs, seen) = (Costs::of(100.0), turnover(0, 1000));
         for streak in 0..4 {
-            assert!(Skip::Auto.frames(root(), streak, 1, &costs, &seen) <= streak);
-            assert_eq!(Skip::AtMost(2).frames(root(), streak, 1, &costs, &seen), streak.min(2));
+            assert!(Skip::Auto.frames(leaf(1, streak), &costs, &seen) < 1 << streak);
+            assert_eq!(Skip::AtMost(2).frames(leaf(1, streak), &costs, &seen), streak.min(2));
         }
     }
 }
