@@ -1,0 +1,162 @@
+//! `kt2005.md`: the table, to be read.
+
+use std::fmt::Write;
+
+use super::Outcome;
+use super::rows::{self, seconds};
+use super::scenes::Published;
+use crate::support::flags::Flags;
+use crate::support::lockstep::Measured;
+use crate::support::table::count;
+
+/// The whole page.
+pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {
+    Ok(format!(
+        "# Table 1 of Kovalčík and Tobola (2005), run again\n\n{}\n\n{COLUMNS}\n\n{}\n\
+         ## More of the same runs\n\n{}\n{}",
+        introduction(flags)?,
+        comparison(outcomes),
+        details(outcomes),
+        notes(flags, outcomes)
+    ))
+}
+
+const COLUMNS: &str = "\
+*Time* is that of the whole flight: keeping up with the world, keeping the tree, culling and drawing, \
+first frame included. *Drawn* and *queries* are means a frame. *Ratio* is new over old: below 1, the new \
+algorithm needs less. The last column of each group is the paper's ratio.";
+
+fn introduction(flags: &Flags) -> anyhow::Result<String> {
+    let (width, height) = flags.size;
+    let detail = flags.detail()?.max_error_px;
+    let detail = match detail {
+        0.0 => "every mesh with all its triangles".to_owned(),
+        pixels => format!("levels of detail within {pixels} pixels"),
+    };
+    let size = if flags.scale == 1.0 && flags.objects == 2500 {
+        String::new()
+    } else {
+        format!(
+            "**This run is not the paper's size**: scale {}, {} moving objects. ",
+            flags.scale, flags.objects
+        )
+    };
+    Ok(format!(
+        "`{}`\n\n{size}The *new* algorithm (dual queries on a ternary tree, which the answers shape) against \
+         the *old* one (statistically optimised queries on a binary tree) over {} frames a scene, \
+         {width} × {height}, {detail}, on the software backend. Both fly through the same world at the same \
+         time, frame by frame, and take turns in going first.",
+        command(),
+        flags.frames
+    ))
+}
+
+/// The command line as it can be typed anywhere: without a path of this machine.
+fn command() -> String {
+    let mut line = "cargo run --release --example paper_tables --".to_owned();
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        if argument == "--out" {
+            arguments.next();
+        } else if !argument.starts_with("--out=") {
+            let _ = write!(line, " {argument}");
+        }
+    }
+    line
+}
+
+/// The main table.
+fn comparison(outcomes: &[Outcome]) -> String {
+    let mut table = "\
+        | scene | time, s: new / old | ratio | paper | drawn: new / old | ratio | paper \
+        | queries: new / old | ratio | paper |\n\
+        |---|---|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    let groups: [Group; 3] = [
+        (seconds, |p| p.seconds, |x| format!("{x:.1}")),
+        (|m| m.summary.drawn.mean, |p| p.drawn, count),
+        (|m| m.summary.queries.mean, |p| p.queries, count),
+    ];
+    for Outcome { scene, name, new, old } in outcomes {
+        let _ = write!(table, "| {name}");
+        for (here, paper, words) in groups {
+            let (a, b) = (here(new), here(old));
+            let published = ratio(paper(&scene.new), paper(&scene.old));
+            let _ = write!(table, " | {} / {} | **{}** | {published}", words(a), words(b), ratio(a, b));
+        }
+        table.push_str(" |\n");
+    }
+    table
+}
+
+/// What is measured, the same in the paper, and how it is written.
+type Group = (fn(&Measured) -> f64, fn(&Published) -> f64, fn(f64) -> String);
+
+/// The second table.
+fn details(outcomes: &[Outcome]) -> String {
+    let mut table = "\
+        | scene | algorithm | objects | median ms | tree's share | waves | triangles drawn \
+        | in the frustum | box visible | drawn / box visible | really visible | of the drawn | wrongly culled |\n\
+        |---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for Outcome { name, new, old, .. } in outcomes {
+        for (algorithm, measured) in [(rows::NEW, new), (rows::OLD, old)] {
+            let s = &measured.summary;
+            let cells = [
+                name.clone(),
+                algorithm.to_owned(),
+                count(s.objects as f64),
+                format!("{:.1}", s.frame_ms.median),
+                percent(s.tree.maintenance_share),
+                format!("{:.1}", s.waves.mean),
+                count(s.drawn_triangles.mean),
+                count(s.in_frustum.mean),
+                known(s.box_visible.map(|m| count(m.mean))),
+                known(s.box_visible.map(|m| ratio(s.drawn.mean, m.mean))),
+                known(s.exact_visible.map(|m| count(m.mean))),
+                known(s.exact_visible.map(|m| percent(m.mean / s.drawn.mean.max(1.0)))),
+                known(s.false_culls.map(|n| n.to_string())),
+            ];
+            let _ = writeln!(table, "| {} |", cells.join(" | "));
+        }
+    }
+    table
+}
+
+fn notes(flags: &Flags, outcomes: &[Outcome]) -> String {
+    let mut notes = "\
+        - Counts are the same on every machine. Times are those of this one, which draws on the CPU; the \
+        paper's machine was an Athlon MP 2600+ with a GeForce 6800 GT, so only ratios compare.\n\
+        - *Tree's share* is the time for placing, refitting, splitting and merging over all time (the paper: \
+        0.2 % to nearly 30 %). *Waves* are the times that a frame waits for answers.\n\
+        - The paper's power plant is the one of the University of North Carolina; ours is generated, with as \
+        many objects and about as many triangles. The bunny is the paper's.\n\
+        - Old and new share the dials of the tree, but for the binary tree's straddlers, which stay in their \
+        parent. The old one skips a visible node's question for at most 8 frames: our rule, for the text gives \
+        none.\n"
+        .to_owned();
+    if flags.oracle {
+        let lost: u64 =
+            outcomes.iter().flat_map(|o| [&o.new, &o.old]).filter_map(|m| m.summary.false_culls).sum();
+        let _ = writeln!(
+            notes,
+            "- *Box visible* are the objects whose own box would be found visible, the least that asking about \
+             boxes can draw; *really visible* those that own a pixel. Objects wrongly culled in all runs: {lost}."
+        );
+    } else {
+        notes.push_str("- The visible sets are known with `--oracle`, which leaves the times as they are.\n");
+    }
+    notes
+}
+
+fn ratio(a: f64, b: f64) -> String {
+    if b > 0.0 { format!("{:.2}", a / b) } else { "–".to_owned() }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+fn known(figure: Option<String>) -> String {
+    figure.unwrap_or_else(|| "–".to_owned())
+}
