@@ -5,6 +5,7 @@ pub mod chart;
 pub mod flags;
 pub mod last_frame;
 pub mod lockstep;
+pub mod markdown;
 pub mod painter;
 pub mod picture;
 pub mod plots;

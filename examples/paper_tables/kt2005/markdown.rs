@@ -7,6 +7,7 @@ use super::rows::{self, seconds};
 use super::scenes::Published;
 use crate::support::flags::Flags;
 use crate::support::lockstep::Measured;
+use crate::support::markdown::{command, known, percent, ratio, table};
 use crate::support::table::count;
 
 /// The whole page.
@@ -46,47 +47,42 @@ fn introduction(flags: &Flags) -> anyhow::Result<String> {
          the *old* one (statistically optimised queries on a binary tree) over {} frames a scene, \
          {width} × {height}, {detail}, on the software backend. Both fly through the same world at the same \
          time, frame by frame, and take turns in going first.",
-        command(),
+        command("paper_tables"),
         flags.frames
     ))
 }
 
-/// The command line as it can be typed anywhere: without a path of this machine.
-fn command() -> String {
-    let mut line = "cargo run --release --example paper_tables --".to_owned();
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        if argument == "--out" {
-            arguments.next();
-        } else if !argument.starts_with("--out=") {
-            let _ = write!(line, " {argument}");
-        }
-    }
-    line
-}
-
 /// The main table.
 fn comparison(outcomes: &[Outcome]) -> String {
-    let mut table = "\
-        | scene | time, s: new / old | ratio | paper | drawn: new / old | ratio | paper \
-        | queries: new / old | ratio | paper |\n\
-        |---|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
+    const HEADER: [&str; 10] = [
+        "scene",
+        "time, s: new / old",
+        "ratio",
+        "paper",
+        "drawn: new / old",
+        "ratio",
+        "paper",
+        "queries: new / old",
+        "ratio",
+        "paper",
+    ];
     let groups: [Group; 3] = [
         (seconds, |p| p.seconds, |x| format!("{x:.1}")),
         (|m| m.summary.drawn.mean, |p| p.drawn, count),
         (|m| m.summary.queries.mean, |p| p.queries, count),
     ];
-    for Outcome { scene, name, new, old } in outcomes {
-        let _ = write!(table, "| {name}");
+    let row = |outcome: &Outcome| {
+        let Outcome { scene, name, new, old } = outcome;
+        let mut cells = vec![name.clone()];
         for (here, paper, words) in groups {
             let (a, b) = (here(new), here(old));
-            let published = ratio(paper(&scene.new), paper(&scene.old));
-            let _ = write!(table, " | {} / {} | **{}** | {published}", words(a), words(b), ratio(a, b));
+            cells.push(format!("{} / {}", words(a), words(b)));
+            cells.push(format!("**{}**", ratio(a, b)));
+            cells.push(ratio(paper(&scene.new), paper(&scene.old)));
         }
-        table.push_str(" |\n");
-    }
-    table
+        cells
+    };
+    table(&HEADER, outcomes.iter().map(row))
 }
 
 /// What is measured, the same in the paper, and how it is written.
@@ -94,33 +90,41 @@ type Group = (fn(&Measured) -> f64, fn(&Published) -> f64, fn(f64) -> String);
 
 /// The second table.
 fn details(outcomes: &[Outcome]) -> String {
-    let mut table = "\
-        | scene | algorithm | objects | median ms | tree's share | waves | triangles drawn \
-        | in the frustum | box visible | drawn / box visible | really visible | of the drawn | wrongly culled |\n\
-        |---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for Outcome { name, new, old, .. } in outcomes {
-        for (algorithm, measured) in [(rows::NEW, new), (rows::OLD, old)] {
-            let s = &measured.summary;
-            let cells = [
-                name.clone(),
-                algorithm.to_owned(),
-                count(s.objects as f64),
-                format!("{:.1}", s.frame_ms.median),
-                percent(s.tree.maintenance_share),
-                format!("{:.1}", s.waves.mean),
-                count(s.drawn_triangles.mean),
-                count(s.in_frustum.mean),
-                known(s.box_visible.map(|m| count(m.mean))),
-                known(s.box_visible.map(|m| ratio(s.drawn.mean, m.mean))),
-                known(s.exact_visible.map(|m| count(m.mean))),
-                known(s.exact_visible.map(|m| percent(m.mean / s.drawn.mean.max(1.0)))),
-                known(s.false_culls.map(|n| n.to_string())),
-            ];
-            let _ = writeln!(table, "| {} |", cells.join(" | "));
-        }
-    }
-    table
+    const HEADER: [&str; 13] = [
+        "scene",
+        "algorithm",
+        "objects",
+        "median ms",
+        "tree's share",
+        "waves",
+        "triangles drawn",
+        "in the frustum",
+        "box visible",
+        "drawn / box visible",
+        "really visible",
+        "of the drawn",
+        "wrongly culled",
+    ];
+    let row = |name: &str, algorithm: &str, measured: &Measured| {
+        let s = &measured.summary;
+        vec![
+            name.to_owned(),
+            algorithm.to_owned(),
+            count(s.objects as f64),
+            format!("{:.1}", s.frame_ms.median),
+            percent(s.tree.maintenance_share),
+            format!("{:.1}", s.waves.mean),
+            count(s.drawn_triangles.mean),
+            count(s.in_frustum.mean),
+            known(s.box_visible.map(|m| count(m.mean))),
+            known(s.box_visible.map(|m| ratio(s.drawn.mean, m.mean))),
+            known(s.exact_visible.map(|m| count(m.mean))),
+            known(s.exact_visible.map(|m| percent(m.mean / s.drawn.mean.max(1.0)))),
+            known(s.false_culls.map(|n| n.to_string())),
+        ]
+    };
+    let both = |o: &Outcome| [row(&o.name, rows::NEW, &o.new), row(&o.name, rows::OLD, &o.old)];
+    table(&HEADER, outcomes.iter().flat_map(both))
 }
 
 fn notes(flags: &Flags, outcomes: &[Outcome]) -> String {
@@ -147,16 +151,4 @@ fn notes(flags: &Flags, outcomes: &[Outcome]) -> String {
         notes.push_str("- The visible sets are known with `--oracle`, which leaves the times as they are.\n");
     }
     notes
-}
-
-fn ratio(a: f64, b: f64) -> String {
-    if b > 0.0 { format!("{:.2}", a / b) } else { "–".to_owned() }
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
-}
-
-fn known(figure: Option<String>) -> String {
-    figure.unwrap_or_else(|| "–".to_owned())
 }
