@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 use tercet::draw::Drawable;
-use tercet::geom::Aabb;
+use tercet::geom::{Aabb, Frustum, View, Viewport};
 use tercet::scene::Bounds;
 use tercet::scene::mesh::{Level, Mesh};
-use tercet::worlds::{self, CameraPath, Model, Motion, Pathology, Placed, Swarm, power_plant};
+use tercet::worlds::{self, CameraPath, Model, Motion, Pathology, Placed, Swarm, power_plant, teapots};
 
 #[test]
 fn the_plant_has_as_many_objects_and_triangles_as_the_papers() {
@@ -39,6 +39,7 @@ fn a_seed_makes_the_same_world_bit_for_bit() {
     assert_eq!(fingerprint(&worlds::random(1, 200)), 0x5BA0_C971_2D50_07F8);
     let pathological = Pathology::ALL.map(|kind| fingerprint(&worlds::pathological(kind)));
     assert_eq!(pathological.iter().fold(0, |all, one| all ^ one), 0xE606_8D5E_925C_6346);
+    assert_eq!(fingerprint(&teapot_cloud(1, 2500)), 0x6030_6F6B_B2D2_4EFF);
     assert_ne!(fingerprint(&worlds::power_plant(2, 0.1)), fingerprint(&worlds::power_plant(1, 0.1)));
 }
 
@@ -133,17 +134,7 @@ fn meshes_are_closed_and_face_outward() {
     let meshes = worlds::power_plant(1, 0.01).meshes.into_iter().chain(worlds::random(1, 1).meshes);
     for mesh in meshes {
         for (l, level) in mesh.levels().iter().enumerate() {
-            let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
-            let mut volume = 0.0;
-            for triangle in corners(level) {
-                volume += triangle[0].dot(triangle[1].cross(triangle[2])) / 6.0;
-                for k in 0..3 {
-                    let [a, b] =
-                        [triangle[k], triangle[(k + 1) % 3]].map(|p| (p + 0.0).to_array().map(f32::to_bits));
-                    *edges.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
-                }
-            }
-            let open = edges.iter().filter(|(edge, count)| edge[0] != edge[1] && **count != 0).count();
+            let (open, volume) = hull(corners(level));
             assert_eq!(open, 0, "{}, level {l}: {open} open edges", mesh.name());
             assert!(volume > 0.0, "{}, level {l}: volume {volume}", mesh.name());
         }
@@ -172,6 +163,89 @@ fn levels_keep_their_promise() {
             }
         }
     }
+}
+
+#[test]
+fn the_teapots_have_as_many_triangles_as_the_papers() {
+    let mesh = worlds::teapot_mesh();
+    let counts: Vec<usize> = mesh.levels().iter().map(|l| l.indices.len() / 3).collect();
+    assert_eq!(counts, [10, 7, 5, 3, 2, 1].map(|n| 32 * n * n * 2));
+    assert_eq!((mesh.triangle_count(), teapot_cloud(1, 2500).triangles()), (6400, 16_000_000));
+    let flat = corners(&mesh.levels()[0]).filter(|[a, b, c]| a == b || b == c || c == a).count();
+    assert_eq!(flat, 80, "one a quad around the tip of the lid and the middle of the bottom");
+    let known = Aabb::new(Vec3::new(-3.0, 0.0, -2.0), Vec3::new(3.44, 3.15, 2.0));
+    let off = (mesh.bounds().min - known.min).abs().max((mesh.bounds().max - known.max).abs());
+    assert!(off.max_element() < 0.01, "y up, the spout toward +x: {:?}", mesh.bounds());
+}
+
+/// Patches meet without cracks: the only open edges are those of the sixteen curves that belong
+/// to one patch. They are the inner rim, the lid's edge, and both ends of handle and spout.
+#[test]
+fn the_teapots_patches_meet_and_face_outward() {
+    for (level, n) in worlds::teapot_mesh().levels().iter().zip([10, 7, 5, 3, 2, 1]) {
+        // At n = 1 handle and spout are flat sheets, whose two sides close each other.
+        let curves = if n == 1 { 8 } else { 16 };
+        assert_eq!(hull(corners(level)).0, curves * n, "open edges at {n} quads a side");
+        let triangles: Vec<_> = corners(level).collect();
+        let patches: Vec<_> = triangles.chunks(2 * n * n).collect();
+        let part = |patches: &[&[[Vec3; 3]]]| hull(patches.concat().into_iter()).1;
+        let pot = part(&[&patches[..12], &patches[28..]].concat());
+        let [handle, spout, lid] = [12..16, 16..20, 20..28].map(|range| part(&patches[range]));
+        assert!(pot > 10.0 && lid > 2.0, "{n}: pot {pot}, lid {lid}");
+        if n > 1 {
+            assert!(handle > 0.1 && spout > 0.1, "{n}: handle {handle}, spout {spout}");
+        }
+    }
+}
+
+/// The stated errors bound the distance of the surfaces, sampled densely both ways, and are not
+/// much larger than it.
+#[test]
+fn the_teapots_levels_keep_their_promise() {
+    let mesh = worlds::teapot_mesh();
+    let levels = mesh.levels();
+    assert_eq!(levels[0].error, 0.0);
+    for (l, level) in levels.iter().enumerate().skip(1) {
+        assert!(level.error > levels[l - 1].error, "level {l}: errors must grow");
+        let apart = farthest(&levels[0], level).max(farthest(level, &levels[0]));
+        println!("level {l}: {apart} of {}", level.error);
+        assert!(apart <= level.error, "level {l}: {apart} > {}", level.error);
+        assert!(apart > 0.3 * level.error, "level {l}: {apart} is far below {}", level.error);
+    }
+}
+
+#[test]
+fn the_cloud_is_as_dense_whatever_its_number() {
+    let density = |n: usize| n as f32 / teapots::room(n).size().element_product();
+    for n in [1, 150, 2500, 1_000_000] {
+        assert!((density(n) / density(2500) - 1.0).abs() < 1e-5, "{n}: {}", density(n));
+        let scale = teapots::room(n).max.x / teapots::room(2500).max.x;
+        let [eye, of_2500] = [n, 2500].map(|n| teapots::path(n).pose(0.3).eye);
+        assert!(eye.distance(of_2500 * scale) < 1e-4 * eye.length());
+    }
+    assert_eq!((teapots::room(0), teapots::room(2500).max), (teapots::room(1), Vec3::splat(19.0)));
+}
+
+/// What the flight was made for: nearly all of the cloud is in the picture, and the eye passes
+/// through its edge. The shares that are really visible are in docs/measurements.
+#[test]
+fn the_flight_around_the_teapots_has_nearly_all_in_the_frustum() {
+    let (cloud, room, path) = (teapot_cloud(1, 2500), teapots::room(2500), teapots::path(2500));
+    let (mut shares, mut inside) = (Vec::new(), 0);
+    for n in 0..120 {
+        let pose = path.pose(n as f32 / 119.0);
+        let viewport = Viewport::new(1280, 720);
+        let view = View::look_at(pose.eye, pose.target, pose.fov_y_degrees, 0.1, viewport).unwrap();
+        let frustum = Frustum::new(&view);
+        let seen = cloud.objects.iter().filter(|o| frustum.intersects(&o.bounds)).count();
+        shares.push(seen as f32 / cloud.objects.len() as f32);
+        inside += usize::from(room.contains_point(pose.eye));
+    }
+    let mean = shares.iter().sum::<f32>() / shares.len() as f32;
+    let least = shares.iter().fold(1.0, |least: f32, &share| least.min(share));
+    assert!((0.90..0.97).contains(&mean) && least > 0.6, "mean {mean}, least {least}");
+    assert!((4..20).contains(&inside), "{inside} of 120 frames are inside");
+    assert!([0.0, 1.0].iter().all(|&t| !room.contains_point(path.pose(t).eye)));
 }
 
 #[test]
@@ -256,6 +330,39 @@ fn corners(level: &Level) -> impl Iterator<Item = [Vec3; 3]> {
     level.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]].map(|i| level.positions[i as usize]))
 }
 
+/// How many edges are not used as often in one direction as in the other, and the volume.
+fn hull(triangles: impl Iterator<Item = [Vec3; 3]>) -> (usize, f32) {
+    let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
+    let mut volume = 0.0;
+    for triangle in triangles {
+        volume += triangle[0].dot(triangle[1].cross(triangle[2])) / 6.0;
+        for k in 0..3 {
+            let [a, b] = [triangle[k], triangle[(k + 1) % 3]].map(|p| (p + 0.0).to_array().map(f32::to_bits));
+            *edges.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+        }
+    }
+    let open = edges.iter().filter(|(edge, count)| edge[0] != edge[1] && **count != 0).count();
+    (open, volume)
+}
+
+/// The greatest distance of a surface from another, sampled at some thousand points inside the
+/// triangles and on their edges.
+fn farthest(from: &Level, to: &Level) -> f32 {
+    const SPREAD: [[f32; 3]; 6] = [
+        [1.0, 0.0, 0.0],
+        [0.5, 0.5, 0.0],
+        [0.0, 0.5, 0.5],
+        [0.5, 0.0, 0.5],
+        [0.6, 0.2, 0.2],
+        [0.2, 0.4, 0.4],
+    ];
+    let to: Vec<_> = corners(to).collect();
+    let step = (from.indices.len() / 3 / 500).max(1);
+    let points =
+        corners(from).step_by(step).flat_map(|t| SPREAD.map(|w| t[0] * w[0] + t[1] * w[1] + t[2] * w[2]));
+    points.map(|p| to.iter().map(|&t| point_to_triangle(p, t)).fold(f32::MAX, f32::min)).fold(0.0, f32::max)
+}
+
 /// Ericson, *Real-Time Collision Detection*, §5.1.5, by the edges and the plane.
 fn point_to_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f32 {
     let normal = (b - a).cross(c - a).normalize_or_zero();
@@ -268,6 +375,18 @@ fn point_to_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f32 {
         p.distance(a + (b - a) * t)
     };
     edge(a, b).min(edge(b, c)).min(edge(c, a))
+}
+
+/// The cloud of teapots as it is spawned.
+fn teapot_cloud(seed: u64, count: usize) -> Model {
+    let mut world = hecs::World::new();
+    let mut cloud = Model::new("teapots");
+    cloud.meshes.push(worlds::teapot_mesh());
+    Swarm::new(seed, count, cloud.meshes[0].clone(), teapots::room(count)).spawn(&mut world);
+    for drawable in world.query_mut::<&Drawable>() {
+        cloud.place(0, drawable.world_from_object, drawable.color);
+    }
+    cloud
 }
 
 /// Every bit of a model that is drawn.

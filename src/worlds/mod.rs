@@ -11,6 +11,8 @@ pub mod power_plant;
 mod random;
 mod shape;
 mod swarm;
+mod teapot;
+pub mod teapots;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
@@ -26,6 +28,7 @@ pub use random::random;
 #[cfg(feature = "gltf")]
 pub use swarm::bunny_mesh;
 pub use swarm::{Motion, Swarm};
+pub use teapot::teapot_mesh;
 
 /// A world before it is spawned: shared meshes and the objects that use them.
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! Many moving things: bunnies that fly about a room and bounce off its sides.
+//! Many moving things: bunnies or teapots that fly about a room and bounce off its sides.
 
 use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
@@ -80,7 +80,7 @@ impl Swarm {
 /// Entities that one thread takes at a time: tens of microseconds of work.
 const BATCH: u32 = 512;
 
-/// Fur: white, cream, brown, grey, and a few that are easily found.
+/// Fur or glaze: white, cream, brown, grey, and a few that are easily found.
 const COATS: [[u8; 3]; 6] =
     [[236, 232, 224], [222, 200, 160], [150, 108, 74], [142, 142, 148], [228, 150, 160], [120, 176, 216]];
 
