@@ -61,7 +61,10 @@ fn main() -> anyhow::Result<()> {
     fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
 
     type Build = fn(&Flags) -> anyhow::Result<Scenario>;
-    let worlds: [Build; 1] = [|flags| Scenario::power_plant(flags, !flags.still)];
+    let worlds: [Build; 2] = [
+        |flags| Scenario::power_plant(flags, !flags.still),
+        |flags| Ok(Scenario::teapots(flags, !flags.still)),
+    ];
     let style = "{bar:30} {pos} of {len} frames, {elapsed} so far, {eta} left: {msg}";
     let frames = worlds.len() as u64 * plan.trees.len() as u64 * u64::from(flags.frames);
     let bar = ProgressBar::new(frames).with_style(ProgressStyle::with_template(style)?);

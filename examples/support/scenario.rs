@@ -2,7 +2,7 @@
 
 use hecs::World;
 use tercet::geom::View;
-use tercet::worlds::{self, CameraPath, Swarm, power_plant};
+use tercet::worlds::{self, CameraPath, Swarm, power_plant, teapots};
 
 use super::flags::Flags;
 
@@ -39,6 +39,20 @@ impl Scenario {
         worlds::power_plant(flags.seed, flags.scale).spawn(&mut world);
         let flight = power_plant::path(flags.scale);
         Self { name: "power plant alone".to_owned(), world, swarm: None, flight }
+    }
+
+    /// The cloud of [`teapots`] with `flags.objects` of them.
+    pub fn teapots(flags: &Flags, moving: bool) -> Self {
+        let count = flags.objects;
+        let cloud = Swarm::new(flags.seed, count, worlds::teapot_mesh(), teapots::room(count));
+        let mut world = World::new();
+        cloud.spawn(&mut world);
+        Self {
+            name: format!("{count} {} teapots", manner(moving)),
+            world,
+            swarm: moving.then_some(cloud),
+            flight: teapots::path(count),
+        }
     }
 
     /// Moves what moves on by a frame.

@@ -36,7 +36,7 @@ const fn published(seconds: f64, drawn: f64, queries: f64) -> Published {
 }
 
 /// Table 1, row by row.
-pub const SCENES: [Scene; 3] = [
+pub const SCENES: [Scene; 5] = [
     Scene {
         build: |flags| Scenario::power_plant(flags, true),
         new: published(394.0, 408.0, 103.0),
@@ -51,5 +51,15 @@ pub const SCENES: [Scene; 3] = [
         build: |flags| Ok(Scenario::power_plant_alone(flags)),
         new: published(135.0, 272.0, 91.0),
         old: published(249.0, 656.0, 25.0),
+    },
+    Scene {
+        build: |flags| Ok(Scenario::teapots(flags, true)),
+        new: published(27.0, 2289.0, 59.0),
+        old: published(29.0, 2474.0, 38.0),
+    },
+    Scene {
+        build: |flags| Ok(Scenario::teapots(flags, false)),
+        new: published(22.0, 1884.0, 96.0),
+        old: published(24.0, 2135.0, 47.0),
     },
 ];
