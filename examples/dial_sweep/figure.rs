@@ -9,7 +9,6 @@ use crate::plan::{Plan, Sweep};
 use crate::support::canvas::{self, FAINT, GRID, INK, Key, Sheet, px, text};
 use crate::support::chart::panel;
 use crate::support::flags::Flags;
-use crate::support::report::Summary;
 
 const WIDTH: u32 = 1500;
 /// Of the heading.
@@ -22,8 +21,8 @@ const COLORS: [(RGBColor, RGBColor); 2] =
     [(RGBColor(31, 119, 180), RGBColor(140, 190, 225)), (RGBColor(204, 82, 40), RGBColor(244, 170, 130))];
 const BASE: RGBColor = RGBColor(206, 212, 220);
 
-/// What a curve shows of a lane.
-type Value = fn(&Summary) -> f64;
+/// What a curve shows of a tree.
+type Value = fn(&Outcome, usize) -> f64;
 
 /// A curve of every panel.
 struct Curve<'a> {
@@ -60,14 +59,12 @@ fn curves((outcome, (drawn, time)): (&Outcome, (RGBColor, RGBColor))) -> [Curve<
         let label = format!("{}: {what}", outcome.name);
         Curve { outcome, value, color, label }
     };
-    [curve(|s| s.frame_ms.median, time, "median time"), curve(|s| s.drawn.mean, drawn, "drawn")]
+    [curve(Outcome::time_of_base, time, "time"), curve(Outcome::drawn_of_base, drawn, "drawn")]
 }
 
 impl Curve<'_> {
-    /// Over the base's.
     fn at(&self, tree: usize) -> f64 {
-        let value = |tree: usize| (self.value)(&self.outcome.lanes[tree].summary);
-        if value(0) > 0.0 { value(tree) / value(0) } else { 1.0 }
+        (self.value)(self.outcome, tree)
     }
 }
 

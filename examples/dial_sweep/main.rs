@@ -23,6 +23,7 @@ use plan::Plan;
 use support::flags::Flags;
 use support::lockstep::{self, Lane, Measured};
 use support::program::Program;
+use support::report::percentile;
 use support::scenario::Scenario;
 
 /// What the command line says beside the shared flags.
@@ -30,7 +31,7 @@ use support::scenario::Scenario;
 struct Choice {
     /// Turn this dial only; may be repeated
     #[arg(long = "dial", value_name = "NAME", value_parser = PossibleValuesParser::new(dials::names()))]
-    dials: Vec<String>,
+    only: Vec<String>,
 }
 
 const PROGRAM: Program = Program {
@@ -54,9 +55,38 @@ struct Outcome {
     lanes: Vec<Measured>,
 }
 
+impl Outcome {
+    /// What a tree drew over what the base drew.
+    fn drawn_of_base(&self, tree: usize) -> f64 {
+        let drawn = |tree: usize| self.lanes[tree].summary.drawn.mean;
+        if drawn(0) > 0.0 { drawn(tree) / drawn(0) } else { 1.0 }
+    }
+
+    /// A tree's time over the base's: the median over the frames of the ratio in each. Frames
+    /// differ more than trees, and both had the same ones.
+    fn time_of_base(&self, tree: usize) -> f64 {
+        let (these, base) = (&self.lanes[tree].frames, &self.lanes[0].frames);
+        let ratios: Vec<f64> = these.iter().zip(base).map(|(a, b)| a.frame_ms / b.frame_ms).collect();
+        percentile(&ratios, 50.0)
+    }
+
+    /// The least and the greatest time over the base's of trees that did in every frame what the
+    /// base did: the noise of the measurement. None where a dial always changed something.
+    fn noise(&self) -> Option<(f64, f64)> {
+        let work = |lane: &Measured| -> Vec<_> {
+            lane.frames.iter().map(|f| (f.drawn, f.drawn_triangles, f.queries, f.waves)).collect()
+        };
+        let base = work(self.lanes.first()?);
+        let same = (1..self.lanes.len()).filter(|&tree| work(&self.lanes[tree]) == base);
+        same.map(|tree| self.time_of_base(tree)).fold(None, |range, x| {
+            range.map_or(Some((x, x)), |(a, b): (f64, f64)| Some((a.min(x), b.max(x))))
+        })
+    }
+}
+
 fn main() -> anyhow::Result<()> {
     let (flags, choice) = Flags::parse_for::<Choice>(&PROGRAM);
-    let plan = Plan::new(&flags.tree()?, &choice.dials)?;
+    let plan = Plan::new(&flags.tree()?, &choice.only)?;
     let out = flags.out();
     fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
 

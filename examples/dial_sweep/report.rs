@@ -11,7 +11,7 @@ use crate::Outcome;
 use crate::plan::{Plan, Point};
 use crate::support::flags::Flags;
 use crate::support::markdown::{command, known, percent, ratio, table};
-use crate::support::report::{Summary, round, write_csv};
+use crate::support::report::{round, write_csv};
 use crate::support::table::count;
 
 /// A line of `dial_sweep.csv`: means a frame, unless it says otherwise. The oracle's figures are
@@ -42,8 +42,8 @@ struct Row<'a> {
     flips: f64,
     /// Drawn over the base's.
     drawn_ratio: f64,
-    /// The median time over the base's.
-    median_ratio: f64,
+    /// Time over the base's: the median of the ratios frame by frame.
+    time_ratio: f64,
 }
 
 /// Writes both files into a folder that exists.
@@ -57,8 +57,7 @@ pub fn write(out: &Path, flags: &Flags, plan: &Plan, outcomes: &[Outcome]) -> an
 }
 
 fn row<'a>(outcome: &'a Outcome, dial: &'a str, point: &'a Point) -> Row<'a> {
-    let (base, s) = (&outcome.lanes[0].summary, &outcome.lanes[point.tree].summary);
-    let over = |a: f64, b: f64| if b > 0.0 { round(a / b) } else { 1.0 };
+    let s = &outcome.lanes[point.tree].summary;
     Row {
         world: &outcome.name,
         dial,
@@ -78,8 +77,8 @@ fn row<'a>(outcome: &'a Outcome, dial: &'a str, point: &'a Point) -> Row<'a> {
         splits: s.tree.splits,
         merges: s.tree.merges,
         flips: s.tree.flips,
-        drawn_ratio: over(s.drawn.mean, base.drawn.mean),
-        median_ratio: over(s.frame_ms.median, base.frame_ms.median),
+        drawn_ratio: round(outcome.drawn_of_base(point.tree)),
+        time_ratio: round(outcome.time_of_base(point.tree)),
     }
 }
 
@@ -93,14 +92,14 @@ fn page(flags: &Flags, plan: &Plan, outcomes: &[Outcome]) -> String {
          one's.\n\nThe base: {}.\n\n\
          *Drawn*, *queries*, *waves* and *split + merged* (with those undone soon after, the *flips*) are means a \
          frame; *nodes* is the number after the last one. *Tree's share* is the time for keeping the tree over all \
-         time. *Of base* is a figure over the base's.\n",
+         time. *Of base* is a figure over the base's; for times, the median of the ratios frame by frame.\n",
         command("dial_sweep"),
         flags.policy,
         flags.frames,
         base(plan),
     );
     for outcome in outcomes {
-        let _ = write!(page, "\n## {}\n\n{}", outcome.name, world(plan, outcome));
+        let _ = write!(page, "\n## {}\n\n{}{}", outcome.name, noise(outcome), world(plan, outcome));
     }
     page
 }
@@ -109,6 +108,17 @@ fn page(flags: &Flags, plan: &Plan, outcomes: &[Outcome]) -> String {
 fn base(plan: &Plan) -> String {
     let dials = plan.trees[0].dials();
     dials.iter().map(|dial| format!("`{}={}`", dial.key, dial.value)).collect::<Vec<_>>().join(", ")
+}
+
+/// How far to trust the times.
+fn noise(outcome: &Outcome) -> String {
+    let text = |(least, most)| {
+        format!(
+            "Trees that did in every frame exactly what the base did took {least:.2} to {most:.2} of its time: \
+             what lies between is noise.\n\n"
+        )
+    };
+    outcome.noise().map_or_else(String::new, text)
 }
 
 fn world(plan: &Plan, outcome: &Outcome) -> String {
@@ -126,11 +136,10 @@ fn world(plan: &Plan, outcome: &Outcome) -> String {
         "split + merged (flips)",
         "tree's share",
     ];
-    let base = &outcome.lanes[0].summary;
     let rows = plan.sweeps.iter().flat_map(|sweep| {
         sweep.points.iter().map(|point| {
             let mut cells = vec![sweep.dial.to_owned(), point.value.clone()];
-            cells.extend(figures(&outcome.lanes[point.tree].summary, base));
+            cells.extend(figures(outcome, point.tree));
             if point.tree == 0 {
                 cells.iter_mut().for_each(|cell| *cell = format!("**{cell}**"));
             }
@@ -140,13 +149,14 @@ fn world(plan: &Plan, outcome: &Outcome) -> String {
     table(&HEADER, rows)
 }
 
-fn figures(s: &Summary, base: &Summary) -> [String; 10] {
+fn figures(outcome: &Outcome, tree: usize) -> [String; 10] {
+    let s = &outcome.lanes[tree].summary;
     [
         count(s.drawn.mean),
-        ratio(s.drawn.mean, base.drawn.mean),
+        format!("{:.2}", outcome.drawn_of_base(tree)),
         known(s.box_visible.map(|m| ratio(s.drawn.mean, m.mean))),
         format!("{:.1}", s.frame_ms.median),
-        ratio(s.frame_ms.median, base.frame_ms.median),
+        format!("{:.2}", outcome.time_of_base(tree)),
         count(s.queries.mean),
         format!("{:.1}", s.waves.mean),
         count(s.tree.nodes as f64),

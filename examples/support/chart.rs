@@ -36,13 +36,14 @@ where
         .axis_desc_style(text(14, INK))
         .x_desc("frame")
         .y_desc(unit)
-        .x_label_formatter(&|x| format!("{x:.0}"))
+        .x_label_formatter(&whole)
         .y_label_formatter(&|y| format!("{y}"))
         .draw()?;
     Ok(chart)
 }
 
-/// A round number to end an axis at: the least of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten that is not below `x`.
+/// A round number to end an axis at: the least of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten
+/// that is not below `x`.
 pub fn nice_top(x: f64) -> f64 {
     let x = x.max(1e-3);
     let power = 10f64.powf(x.log10().floor());
@@ -57,4 +58,9 @@ pub fn nice_top(x: f64) -> f64 {
 pub fn panel<'a>(area: &Sheet<'a>, title: &str) -> anyhow::Result<Sheet<'a>> {
     area.draw_text(title, &text(16, INK), (px(26), px(4)))?;
     Ok(area.split_vertically(px(26)).1)
+}
+
+/// The number of a frame; ticks between two frames have none.
+fn whole(x: &f64) -> String {
+    if (x - x.round()).abs() < 1e-6 { format!("{x:.0}") } else { String::new() }
 }

@@ -13,11 +13,14 @@ use tercet::tree::TreeConfig;
 
 use super::program::Program;
 
+/// What culls, unless the command line says otherwise.
+const DEFAULT_POLICY: &str = "dual-query";
+
 /// What the command line says.
 #[derive(Clone, Debug, Parser)]
 pub struct Flags {
     /// The culling algorithm; see the list below
-    #[arg(long, value_name = "NAME", default_value = "dual-query")]
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_POLICY)]
     pub policy: String,
 
     /// Set dials of the policy, the tree or the example by name; see the lists below
@@ -227,8 +230,13 @@ fn catalogue(program: &Program) -> String {
         let separator = if flags.is_empty() { "" } else { " -- " };
         let _ = writeln!(text, "  {run}{separator}{flags}\n      {effect}");
     }
-    let _ = writeln!(text, "\nPolicies: {}", policy::NAMES.join(", "));
-    for name in policy::NAMES {
+    let names = if program.takes("policy") {
+        let _ = writeln!(text, "\nPolicies: {}", policy::NAMES.join(", "));
+        policy::NAMES
+    } else {
+        &[DEFAULT_POLICY]
+    };
+    for name in names {
         let dials = policy::by_name(name).map(|policy| policy.dials()).unwrap_or_default();
         if !dials.is_empty() {
             list(&mut text, &format!("Dials of the policy {name}"), &dials);

@@ -33,6 +33,11 @@ impl Program {
         Self { name, about, examples: EXAMPLES, frames: "240", full_detail: false, refused: &[] }
     }
 
+    /// Whether a shared flag has a meaning here.
+    pub(super) fn takes(&self, flag: &str) -> bool {
+        self.refused.iter().all(|(refused, _)| *refused != flag)
+    }
+
     /// The command of the shared flags, made this program's.
     pub(super) fn adapt(&self, command: Command) -> Command {
         let mut command = command.name(self.name).about(self.about);
