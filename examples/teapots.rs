@@ -24,9 +24,11 @@ fn main() -> anyhow::Result<()> {
     let flags =
         Flags::parse("teapots", "A cloud of teapots, --objects × --scale of them, that hide each other.");
 
+    let count = (flags.objects as f64 * f64::from(flags.scale)).round() as usize;
+    anyhow::ensure!(count > 0, "{} × {} teapots: a cloud needs at least one", flags.objects, flags.scale);
+
     // The app's world. The cloud's room grows with the number of teapots, not their density.
     let mut world = hecs::World::new();
-    let count = (flags.objects as f64 * f64::from(flags.scale)).round() as usize;
     let swarm = Swarm::new(flags.seed, count, worlds::teapot_mesh(), teapots::room(count));
     swarm.spawn(&mut world);
     let flight = teapots::path(count);

@@ -12,7 +12,7 @@ use crate::query::{Answer, QueryBackend, Ticket, Wait};
 use crate::scene::{ObjectId, ObjectRef, Scene};
 use crate::stats::FrameStats;
 use crate::tree::{NodeId, Votes};
-use crate::{Error, Tradeoff};
+use crate::{Costs, Error, Tradeoff};
 
 /// What one camera sees: a policy with its history, and the visible list of the last frame.
 #[derive(Debug)]
@@ -20,6 +20,7 @@ pub struct Culler<P> {
     policy: P,
     /// Speed against accuracy; exact by default.
     pub tradeoff: Tradeoff,
+    costs: Costs,
     frame: u32,
     /// The scene, and the making of its tree, that the history is about; 0 for none yet.
     scene: (u64, u64),
@@ -36,6 +37,7 @@ impl<P: Policy> Culler<P> {
         Self {
             policy,
             tradeoff: Tradeoff::EXACT,
+            costs: Costs::default(),
             frame: 0,
             scene: (0, 0),
             drawn: DrawnList::default(),
@@ -94,8 +96,8 @@ impl<P: Policy> Culler<P> {
         self.drawn.begin(scene, self.frame);
         let frustum = Frustum::new(view);
         let tradeoff = self.tradeoff;
-        let cx =
-            Context { tree: scene.tree(), view, frustum: &frustum, frame: self.frame, tradeoff: &tradeoff };
+        let (frame, costs) = (self.frame, self.costs);
+        let cx = Context { tree: scene.tree(), view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
         let mut stats = FrameStats::default();
         queries.begin(view)?;
         for &slot in scene.objects_store().always() {
@@ -143,6 +145,8 @@ impl<P: Policy> Culler<P> {
         self.policy.vote(&mut self.votes);
         stats.drawn = self.drawn.visible.len() as u32;
         stats.policy = start.elapsed().saturating_sub(stats.draw + stats.query + stats.wait);
+        self.costs.learn(&stats);
+        self.votes.costs = self.costs;
         Ok(stats)
     }
 }
@@ -161,6 +165,11 @@ impl<P> Culler<P> {
     /// What the frame before had drawn and the last one has not; removed objects included.
     pub fn left(&self) -> impl Iterator<Item = ObjectRef> {
         self.drawn.left()
+    }
+
+    /// What asking and drawing cost in the last frames.
+    pub fn costs(&self) -> Costs {
+        self.costs
     }
 
     /// The policy, to read.

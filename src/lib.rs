@@ -66,6 +66,7 @@
 
 #![warn(unreachable_pub)]
 
+mod costs;
 mod culler;
 mod dial;
 mod error;
@@ -80,6 +81,7 @@ pub mod scene;
 pub mod tree;
 pub mod worlds;
 
+pub use costs::Costs;
 pub use culler::{Culler, Voter};
 pub use dial::Dial;
 pub use error::Error;

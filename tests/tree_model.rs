@@ -168,7 +168,7 @@ impl Tested {
 
     /// Answers about each leaf: all visible, all hidden, or a share, by the bits of the seed.
     fn vote(&mut self, seed: u32) {
-        let mut ballot = Ballot(Votes { forward: Vec3::new(0.3, -0.2, -0.9), votes: Vec::new() });
+        let mut ballot = Ballot(Votes { forward: Vec3::new(0.3, -0.2, -0.9), ..Votes::default() });
         for (i, node) in self.scene.tree().nodes().enumerate() {
             if node.is_leaf && seed != 0 {
                 let share = seed.rotate_left(3 * i as u32) % 5;
@@ -323,7 +323,7 @@ fn the_published_rule_splits_and_merges() {
     assert_eq!(scene.tree().stats().nodes, 1, "twelve fit the bulk build's leaf");
     let vote = |scene: &mut Scene, visible: u32| {
         let leaves: Vec<_> = scene.tree().nodes().filter(|n| n.is_leaf).map(|n| n.id).collect();
-        let mut ballot = Ballot(Votes { forward: Vec3::X, votes: Vec::new() });
+        let mut ballot = Ballot(Votes { forward: Vec3::X, ..Votes::default() });
         leaves.iter().for_each(|&leaf| ballot.0.count(leaf, visible, 100));
         scene.adapt([&mut ballot]);
         scene.update();
@@ -347,7 +347,7 @@ fn one_dissenting_view_prevents_a_merge() {
     scene.update();
     let ballot = |scene: &Scene, visible: u32| {
         let votes = scene.tree().nodes().filter(|n| n.is_leaf).map(|n| n.id);
-        let mut ballot = Ballot(Votes { forward: Vec3::X, votes: Vec::new() });
+        let mut ballot = Ballot(Votes { forward: Vec3::X, ..Votes::default() });
         votes.for_each(|leaf| ballot.0.count(leaf, visible, 100));
         ballot
     };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::error::ErrorKind;
-use clap::{Args, CommandFactory, FromArgMatches, Parser, ValueEnum};
+use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, ValueEnum};
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
 use tercet::policy::{self, Policy};
@@ -39,7 +39,7 @@ pub struct Flags {
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     pub size: (u32, u32),
 
-    /// How many objects move about; 0 leaves the rest of the world alone
+    /// How many objects move about; 0 leaves the rest of the world, if there is any
     #[arg(long, value_name = "N", default_value = "2500")]
     pub objects: usize,
 
@@ -108,7 +108,7 @@ impl Flags {
 
     /// The same for a program that is no demo.
     pub fn parse_for<More: Args>(program: &Program) -> (Self, More) {
-        let command = More::augment_args(program.adapt(Self::command())).after_long_help(catalogue(program));
+        let command = command::<More>(program);
         let matches = command.clone().get_matches();
         let mut flags = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         let more = More::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
@@ -222,6 +222,12 @@ fn is_own_dial(key: &str) -> bool {
     [MAX_ERROR, FLIGHT_END].iter().any(|dial| dial.key == key)
 }
 
+/// The command with an example's own flags. Its name and purpose come last: adding flags brings
+/// the doc comment of their type along.
+fn command<More: Args>(program: &Program) -> Command {
+    program.adapt(More::augment_args(Flags::command())).after_long_help(catalogue(program))
+}
+
 /// What stands below the flags in `--help`.
 fn catalogue(program: &Program) -> String {
     let run = format!("cargo run --release --example {}", program.name);
@@ -294,8 +300,9 @@ mod tests {
 
     #[test]
     fn the_command_is_well_formed() {
-        let program = Program::demo("example", "");
-        program.adapt(Flags::command()).after_long_help(catalogue(&program)).debug_assert();
+        let command = command::<NoMore>(&Program::demo("example", "What it shows."));
+        assert_eq!(command.get_about().map(ToString::to_string).as_deref(), Some("What it shows."));
+        command.debug_assert();
     }
 
     #[test]

@@ -18,9 +18,8 @@
 //! the depth buffer: it waits for others, but nothing waits for it. That takes a quarter of the
 //! waves for the same drawing.
 //!
-//! *Skipping.* A leaf found visible in `k` consecutive answers goes unasked for the next
-//! `min(k, n_skip)` frames. The paper says only that such nodes are queried less often; the rule
-//! is ours. It draws more, never less.
+//! *Skipping.* A leaf that keeps being visible goes unasked for some frames: as many as pay
+//! ([`Skip`]). It draws more, never less.
 //!
 //! *Pull-up.* An inner node none of whose children was visible is hidden as a whole, and asked
 //! about as one in the next frame.
@@ -31,7 +30,8 @@
 use std::collections::VecDeque;
 
 use super::front::{Front, FrontQueue};
-use super::{Action, Context, Extent, History, Policy, ScreenTiles};
+use super::skip::Turnover;
+use super::{Action, Context, Extent, History, Policy, ScreenTiles, Skip};
 use crate::Error;
 use crate::dial::{self, Dial};
 use crate::geom::{PlaneMask, Proxy, Question, Viewport};
@@ -55,11 +55,12 @@ const ORDERS: &[(&str, Order)] =
 pub struct DualQuery {
     /// What visible leaves wait for.
     pub order: Order,
-    /// Frames for which a visible leaf goes unasked, at most; 0 asks every frame.
-    pub n_skip: u32,
+    /// Frames for which a visible leaf goes unasked.
+    pub n_skip: Skip,
     /// Waves in which overlap is heeded; what is left then is asked at once.
     pub max_waves: u32,
     history: History,
+    turnover: Turnover,
     /// Nodes to look at, nearest first.
     front: FrontQueue,
     /// Nodes held back for the next wave.
@@ -100,9 +101,10 @@ impl Default for DualQuery {
     fn default() -> Self {
         Self {
             order: Order::FrontToBack,
-            n_skip: 0,
+            n_skip: Skip::Auto,
             max_waves: 1024,
             history: History::default(),
+            turnover: Turnover::default(),
             front: FrontQueue::default(),
             held: Vec::new(),
             wave: Vec::new(),
@@ -129,6 +131,7 @@ impl Policy for DualQuery {
 
     fn begin(&mut self, cx: &Context<'_>) {
         self.history.follow(cx.tree);
+        self.turnover.fade();
         self.front.clear();
         self.held.clear();
         self.wave.clear();
@@ -172,6 +175,7 @@ impl Policy for DualQuery {
             self.votes.count(node, visible, total);
         }
         let visible = answer.is_visible(cx.tradeoff.visible_pixels);
+        self.note_turnover(cx, node, visible);
         if visible && self.stage == Stage::Drawing {
             self.found_visible(cx, node, mask);
         } else if visible {
@@ -184,6 +188,7 @@ impl Policy for DualQuery {
 
     fn reset(&mut self) {
         self.history.clear();
+        self.turnover = Turnover::default();
     }
 
     fn vote(&mut self, votes: &mut Votes) {
@@ -194,7 +199,7 @@ impl Policy for DualQuery {
     fn dials(&self) -> Vec<Dial> {
         vec![
             Dial::choice("order", self.order, ORDERS, "what leaves visible in the last frame wait for"),
-            Dial::new("n_skip", self.n_skip, "frames for which a visible leaf goes unasked, at most"),
+            Dial::new("n_skip", self.n_skip.name(), "frames for which a visible leaf goes unasked, at most, or auto"),
             Dial::new("max_waves", self.max_waves, "waves in which overlapping questions are held back"),
         ]
     }
@@ -202,7 +207,7 @@ impl Policy for DualQuery {
     fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
         match key {
             "order" => self.order = dial::choice(key, value, ORDERS)?,
-            "n_skip" => self.n_skip = dial::number(key, value, 0..=1000)?,
+            "n_skip" => self.n_skip = Skip::parse(key, value)?,
             "max_waves" => self.max_waves = dial::number(key, value, 0..=100_000)?,
             _ => return Err(dial::unknown(key, value, &self.dials())),
         }
@@ -313,11 +318,21 @@ impl DualQuery {
         self.take_as_visible(cx, node, mask);
     }
 
+    /// An answer about a leaf that was visible says how often such leaves become hidden.
+    fn note_turnover(&mut self, cx: &Context<'_>, node: NodeId, visible: bool) {
+        let state = self.history.get(node);
+        if state.visible && state.asked_at != 0 && cx.tree.is_leaf(node) {
+            self.turnover.note(cx.frame.wrapping_sub(state.asked_at), !visible);
+        }
+    }
+
     fn count_streak(&mut self, cx: &Context<'_>, node: NodeId) {
-        let n_skip = self.n_skip;
         let state = self.history.entry(node);
         state.streak = state.streak.saturating_add(1);
-        state.skip_until = cx.frame.saturating_add(state.streak.min(n_skip));
+        state.asked_at = cx.frame;
+        let objects = cx.tree.own_count(node);
+        let skip = self.n_skip.frames(node, state.streak, objects, &cx.costs, &self.turnover);
+        state.skip_until = cx.frame.saturating_add(skip);
     }
 
     /// Draws a leaf, opens an inner node.

@@ -13,6 +13,8 @@ pub struct NodeState {
     pub visible: bool,
     /// Consecutive answers that found it visible.
     pub streak: u32,
+    /// The frame of the last of them; 0 for never.
+    pub asked_at: u32,
     /// The last frame for which it is taken as visible without asking.
     pub skip_until: u32,
 }
@@ -66,9 +68,11 @@ impl History {
     fn apply(states: &mut [NodeState], edit: &Edit) {
         match *edit {
             Edit::Split { parent, children } => {
-                let memory = recall(states, parent);
+                // Nobody has asked about the children themselves.
+                let NodeState { frame, visible, .. } = recall(states, parent);
                 for child in children {
-                    states[child.index()] = NodeState { identity: child.identity(), ..memory };
+                    let identity = child.identity();
+                    states[child.index()] = NodeState { identity, frame, visible, ..NodeState::default() };
                 }
             }
             Edit::Merged { parent, children } => {
@@ -100,7 +104,7 @@ mod tests {
 
     fn votes(tree: &Tree, visible: u32) -> Votes {
         let leaves = tree.nodes().filter(|n| n.is_leaf).map(|n| n.id);
-        let mut votes = Votes { forward: Vec3::X, votes: Vec::new() };
+        let mut votes = Votes { forward: Vec3::X, ..Votes::default() };
         leaves.for_each(|leaf| votes.count(leaf, visible, 100));
         votes
     }

@@ -12,6 +12,7 @@ mod history;
 mod none;
 mod order;
 mod recorded;
+mod skip;
 mod statistical;
 mod stop_and_wait;
 
@@ -21,6 +22,7 @@ pub use history::{History, NodeState};
 pub use none::DrawAll;
 pub use order::ScreenTiles;
 pub use recorded::{Recorded, Recording};
+pub use skip::Skip;
 pub use statistical::Statistical;
 pub use stop_and_wait::StopAndWait;
 
@@ -29,7 +31,7 @@ use crate::geom::{Frustum, Proxy, View};
 use crate::query::{Answer, Ticket, Want};
 use crate::scene::ObjectId;
 use crate::tree::{NodeId, Tree, Votes};
-use crate::{Error, Tradeoff};
+use crate::{Costs, Error, Tradeoff};
 
 /// What a policy may look at.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +46,8 @@ pub struct Context<'a> {
     pub frame: u32,
     /// Speed against accuracy.
     pub tradeoff: &'a Tradeoff,
+    /// What asking and drawing cost in this view's last frames.
+    pub costs: Costs,
 }
 
 /// Which objects of a node are meant. Only those that meet the frustum are drawn, unless it says

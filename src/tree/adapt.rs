@@ -12,6 +12,7 @@ use super::build::Extent;
 use super::node::{Evidence, NodeId};
 use super::place::REFIT;
 use super::{Edit, Tree};
+use crate::Costs;
 
 /// One view's answer about one node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,8 @@ pub struct Vote {
 pub struct Votes {
     /// Direction of view, for view-aligned planes.
     pub forward: Vec3,
+    /// What asking and drawing cost this view.
+    pub costs: Costs,
     /// In the order of the answers.
     pub votes: Vec<Vote>,
 }

@@ -1,0 +1,87 @@
+//! What asking and drawing cost, as seen: rules that weigh one against the other read it here.
+
+use std::time::Duration;
+
+use crate::stats::FrameStats;
+
+/// Smoothed times of one view's last frames. To policies and to the tree they are a recorded
+/// argument like any other: the same costs and answers, the same decisions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Costs {
+    /// Natural logarithm of what [`Costs::question`] returns.
+    log: f32,
+}
+
+/// How much a new frame counts.
+const WEIGHT: f32 = 0.125;
+
+/// A hidden object costs less to draw than the mean of those drawn, which are seen: its samples
+/// fail the depth test. On the demos it is a quarter to two thirds.
+const HIDDEN: f32 = 0.5;
+
+impl Default for Costs {
+    fn default() -> Self {
+        Self::of(0.25)
+    }
+}
+
+impl Costs {
+    /// A question that costs as much as drawing `objects` hidden objects, within 1/256 to 256.
+    pub fn of(objects: f32) -> Self {
+        let objects = if objects.is_nan() { 1.0 } else { objects };
+        Self { log: objects.clamp(1.0 / 256.0, 256.0).ln() }
+    }
+
+    /// What a question costs, policy and waiting included, in hidden objects that could be drawn
+    /// instead: greater than 0.
+    pub fn question(&self) -> f32 {
+        self.log.exp()
+    }
+
+    /// Takes a frame's times. A frame that drew or asked nothing, or took no time, tells nothing.
+    pub fn learn(&mut self, stats: &FrameStats) {
+        let each = |time: Duration, n: u32| time.as_secs_f32() / n as f32;
+        let question = each(stats.policy + stats.query + stats.wait, stats.queries);
+        let object = each(stats.draw, stats.drawn) * HIDDEN;
+        let ratio = question / object;
+        if ratio.is_finite() && ratio > 0.0 {
+            // Of logarithms: twice as dear and half as dear weigh alike.
+            self.log += WEIGHT * (Self::of(ratio).log - self.log);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(asking: u64, queries: u32, drawing: u64, drawn: u32) -> FrameStats {
+        FrameStats {
+            queries,
+            drawn,
+            wait: Duration::from_micros(asking),
+            draw: Duration::from_micros(drawing),
+            ..FrameStats::default()
+        }
+    }
+
+    #[test]
+    fn costs_approach_what_is_seen() {
+        let mut costs = Costs::default();
+        for _ in 0..100 {
+            costs.learn(&frame(100, 10, 800, 20));
+        }
+        let expected = 10.0 / (40.0 * HIDDEN);
+        assert!((costs.question() / expected - 1.0).abs() < 1e-3, "{costs:?}");
+    }
+
+    #[test]
+    fn frames_that_tell_nothing_change_nothing() {
+        let mut costs = Costs::of(3.0);
+        for empty in [frame(0, 0, 100, 10), frame(100, 10, 0, 0), frame(0, 10, 100, 10), frame(9, 9, 0, 9)] {
+            costs.learn(&empty);
+        }
+        assert_eq!(costs, Costs::of(3.0));
+        assert!(Costs::of(f32::INFINITY).question().is_finite() && Costs::of(0.0).question() > 0.0);
+    }
+}
