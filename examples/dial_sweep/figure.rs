@@ -4,7 +4,7 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
-use crate::Outcome;
+use crate::outcome::Outcome;
 use crate::plan::{Plan, Sweep};
 use crate::support::canvas::{self, FAINT, GRID, INK, Key, Sheet, px, text};
 use crate::support::chart::panel;
@@ -20,6 +20,7 @@ const COLUMNS: usize = 3;
 const COLORS: [(RGBColor, RGBColor); 2] =
     [(RGBColor(31, 119, 180), RGBColor(140, 190, 225)), (RGBColor(204, 82, 40), RGBColor(244, 170, 130))];
 const BASE: RGBColor = RGBColor(206, 212, 220);
+const NOISE: RGBColor = RGBColor(240, 234, 214);
 
 /// What a curve shows of a tree.
 type Value = fn(&Outcome, usize) -> f64;
@@ -36,7 +37,11 @@ struct Curve<'a> {
 pub fn write(path: &Path, flags: &Flags, plan: &Plan, outcomes: &[Outcome]) -> anyhow::Result<()> {
     let curves: Vec<Curve<'_>> = outcomes.iter().zip(COLORS).flat_map(curves).collect();
     let mut keys: Vec<Key> = curves.iter().map(|curve| Key::new(curve.color, curve.label.clone())).collect();
-    keys.push(Key::new(BASE, "the base's value"));
+    keys.extend([
+        Key::new(BASE, "the base's value"),
+        Key::new(NOISE, "noise: how far the times of equal trees differ"),
+    ]);
+    let noise = outcomes.iter().map(Outcome::time_noise).fold(0.0, f64::max);
     let rows = plan.sweeps.len().div_ceil(COLUMNS).max(1);
     let (width, height) = flags.size;
     let subtitle = format!(
@@ -47,7 +52,7 @@ pub fn write(path: &Path, flags: &Flags, plan: &Plan, outcomes: &[Outcome]) -> a
         let title = "The dials of the tree: objects drawn and frame time, over the base's";
         let below = canvas::heading(sheet, title, &subtitle, &keys)?;
         for (cell, sweep) in below.split_evenly((rows, COLUMNS)).iter().zip(&plan.sweeps) {
-            draw(cell, sweep, &curves)?;
+            draw(cell, sweep, &curves, noise)?;
         }
         Ok(())
     })
@@ -68,12 +73,12 @@ impl Curve<'_> {
     }
 }
 
-fn draw(cell: &Sheet<'_>, sweep: &Sweep, curves: &[Curve<'_>]) -> anyhow::Result<()> {
+fn draw(cell: &Sheet<'_>, sweep: &Sweep, curves: &[Curve<'_>], noise: f64) -> anyhow::Result<()> {
     let area = panel(cell, sweep.dial)?;
     let all = || curves.iter().flat_map(|curve| sweep.points.iter().map(|point| curve.at(point.tree)));
     // Never so close that noise looks like an effect.
-    let bottom = all().fold(0.8, f64::min) - 0.05;
-    let top = all().fold(1.2, f64::max) + 0.05;
+    let bottom = all().fold(0.8, f64::min).min(1.0 - noise) - 0.05;
+    let top = all().fold(1.2, f64::max).max(1.0 + noise) + 0.05;
     let last = sweep.points.len() as f64 - 1.0;
     let mut chart = ChartBuilder::on(&area)
         .margin(px(20))
@@ -81,6 +86,7 @@ fn draw(cell: &Sheet<'_>, sweep: &Sweep, curves: &[Curve<'_>]) -> anyhow::Result
         .x_label_area_size(px(30))
         .y_label_area_size(px(52))
         .build_cartesian_2d(-0.5..last + 0.5, bottom..top)?;
+    chart.draw_series([Rectangle::new([(-0.5, 1.0 - noise), (last + 0.5, 1.0 + noise)], NOISE.filled())])?;
     chart
         .configure_mesh()
         .disable_x_mesh()

@@ -8,6 +8,7 @@
 
 mod dials;
 mod figure;
+mod outcome;
 mod plan;
 mod report;
 #[path = "../support/mod.rs"]
@@ -19,11 +20,11 @@ use anyhow::Context;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use indicatif::{ProgressBar, ProgressStyle};
+use outcome::Outcome;
 use plan::Plan;
 use support::flags::Flags;
-use support::lockstep::{self, Lane, Measured};
+use support::lockstep::{self, Lane};
 use support::program::Program;
-use support::report::percentile;
 use support::scenario::Scenario;
 
 /// What the command line says beside the shared flags.
@@ -49,41 +50,6 @@ const PROGRAM: Program = Program {
     refused: &[],
 };
 
-/// A world, and what every lane of the plan measured in it.
-struct Outcome {
-    name: String,
-    lanes: Vec<Measured>,
-}
-
-impl Outcome {
-    /// What a tree drew over what the base drew.
-    fn drawn_of_base(&self, tree: usize) -> f64 {
-        let drawn = |tree: usize| self.lanes[tree].summary.drawn.mean;
-        if drawn(0) > 0.0 { drawn(tree) / drawn(0) } else { 1.0 }
-    }
-
-    /// A tree's time over the base's: the median over the frames of the ratio in each. Frames
-    /// differ more than trees, and both had the same ones.
-    fn time_of_base(&self, tree: usize) -> f64 {
-        let (these, base) = (&self.lanes[tree].frames, &self.lanes[0].frames);
-        let ratios: Vec<f64> = these.iter().zip(base).map(|(a, b)| a.frame_ms / b.frame_ms).collect();
-        percentile(&ratios, 50.0)
-    }
-
-    /// The least and the greatest time over the base's of trees that did in every frame what the
-    /// base did: the noise of the measurement. None where a dial always changed something.
-    fn noise(&self) -> Option<(f64, f64)> {
-        let work = |lane: &Measured| -> Vec<_> {
-            lane.frames.iter().map(|f| (f.drawn, f.drawn_triangles, f.queries, f.waves)).collect()
-        };
-        let base = work(self.lanes.first()?);
-        let same = (1..self.lanes.len()).filter(|&tree| work(&self.lanes[tree]) == base);
-        same.map(|tree| self.time_of_base(tree)).fold(None, |range, x| {
-            range.map_or(Some((x, x)), |(a, b): (f64, f64)| Some((a.min(x), b.max(x))))
-        })
-    }
-}
-
 fn main() -> anyhow::Result<()> {
     let (flags, choice) = Flags::parse_for::<Choice>(&PROGRAM);
     let plan = Plan::new(&flags.tree()?, &choice.only)?;
@@ -107,7 +73,7 @@ fn main() -> anyhow::Result<()> {
         let lane = |tree: &_| Lane::new(flags.policy()?, Clone::clone(tree));
         let lanes = plan.trees.iter().map(lane).collect::<anyhow::Result<_>>()?;
         let lanes = lockstep::run(scenario, &flags, lanes, || bar.inc(1))?;
-        outcomes.push(Outcome { name, lanes });
+        outcomes.push(Outcome::new(name, lanes));
     }
     bar.finish_and_clear();
 

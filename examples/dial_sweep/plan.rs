@@ -1,4 +1,4 @@
-//! Which trees are run: the base, and one for each other value of each dial.
+//! Which trees are run: the base, several times, and one for each other value of each dial.
 
 use anyhow::Context;
 use tercet::tree::TreeConfig;
@@ -7,7 +7,7 @@ use crate::dials::DIALS;
 
 /// What is run.
 pub struct Plan {
-    /// The trees, each run once; the first is the base.
+    /// The trees, each run once; the first [`Plan::COPIES`] are the base.
     pub trees: Vec<TreeConfig>,
     /// The dials.
     pub sweeps: Vec<Sweep>,
@@ -30,12 +30,15 @@ pub struct Point {
 }
 
 impl Plan {
+    /// How often the base is run: what differs among the copies is noise.
+    pub const COPIES: usize = 3;
+
     /// Turns the dials of these names around a base; all dials, if none is named.
     ///
     /// # Errors
     /// When the tree does not take a value.
     pub fn new(base: &TreeConfig, names: &[String]) -> anyhow::Result<Self> {
-        let mut plan = Self { trees: vec![base.clone()], sweeps: Vec::new() };
+        let mut plan = Self { trees: vec![base.clone(); Self::COPIES], sweeps: Vec::new() };
         let wanted = |dial: &str| names.is_empty() || names.iter().any(|name| name == dial);
         for (dial, values) in DIALS.iter().filter(|(dial, _)| wanted(dial)) {
             let mut points = Vec::new();

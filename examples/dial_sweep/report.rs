@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::Context;
 use serde::Serialize;
 
-use crate::Outcome;
+use crate::outcome::Outcome;
 use crate::plan::{Plan, Point};
 use crate::support::flags::Flags;
 use crate::support::markdown::{command, known, percent, ratio, table};
@@ -57,7 +57,7 @@ pub fn write(out: &Path, flags: &Flags, plan: &Plan, outcomes: &[Outcome]) -> an
 }
 
 fn row<'a>(outcome: &'a Outcome, dial: &'a str, point: &'a Point) -> Row<'a> {
-    let s = &outcome.lanes[point.tree].summary;
+    let s = outcome.summary(point.tree);
     Row {
         world: &outcome.name,
         dial,
@@ -88,8 +88,8 @@ fn page(flags: &Flags, plan: &Plan, outcomes: &[Outcome]) -> String {
         "# The dials of the tree\n\n`{}`\n\n\
          One dial is turned at a time; the others keep the base's values. The base's rows are bold. Policy {}, \
          software backend, {} frames, {width} × {height}. All trees fly through the same world at the same time, \
-         frame by frame, and take turns in going first. Counts are the same on every machine; times are this \
-         one's.\n\nThe base: {}.\n\n\
+         frame by frame, in an order that changes. Times are this \
+         machine's; counts hardly depend on it: only dials that are `auto` weigh the times seen.\n\nThe base: {}.\n\n\
          *Drawn*, *queries*, *waves* and *split + merged* (with those undone soon after, the *flips*) are means a \
          frame; *nodes* is the number after the last one. *Tree's share* is the time for keeping the tree over all \
          time. *Of base* is a figure over the base's; for times, the median of the ratios frame by frame.\n",
@@ -110,15 +110,17 @@ fn base(plan: &Plan) -> String {
     dials.iter().map(|dial| format!("`{}={}`", dial.key, dial.value)).collect::<Vec<_>>().join(", ")
 }
 
-/// How far to trust the times.
+/// How far to trust the figures.
 fn noise(outcome: &Outcome) -> String {
-    let text = |(least, most)| {
-        format!(
-            "Trees that did in every frame exactly what the base did took {least:.2} to {most:.2} of its time: \
-             what lies between is noise.\n\n"
-        )
-    };
-    outcome.noise().map_or_else(String::new, text)
+    let lost = outcome.false_culls().map(|n| format!(" Objects wrongly culled, all trees together: {n}."));
+    format!(
+        "The base ran {} times. Its copies differed by up to {} in time and {} in objects drawn: smaller effects \
+         are noise.{}\n\n",
+        Plan::COPIES,
+        percent(outcome.time_noise()),
+        percent(outcome.drawn_noise()),
+        lost.unwrap_or_default()
+    )
 }
 
 fn world(plan: &Plan, outcome: &Outcome) -> String {
@@ -150,7 +152,7 @@ fn world(plan: &Plan, outcome: &Outcome) -> String {
 }
 
 fn figures(outcome: &Outcome, tree: usize) -> [String; 10] {
-    let s = &outcome.lanes[tree].summary;
+    let s = outcome.summary(tree);
     [
         count(s.drawn.mean),
         format!("{:.2}", outcome.drawn_of_base(tree)),

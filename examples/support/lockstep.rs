@@ -1,9 +1,12 @@
 //! Several ways of culling the same world, side by side: each frame is run by all of them before
-//! the next one comes, and who goes first changes from frame to frame. What else the machine does
+//! the next one comes, and their order changes from frame to frame. What else the machine does
 //! meanwhile then hits all of them alike.
 
 use anyhow::ensure;
 use hecs::World;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 use tercet::Culler;
 use tercet::geom::View;
 use tercet::policy::Policy;
@@ -92,12 +95,20 @@ pub fn run(
 ) -> anyhow::Result<Vec<Measured>> {
     let painter = Painter { detail: flags.detail()? };
     let mut reference = Reference::new(painter, flags.oracle);
-    let count = lanes.len();
+    let mut order: Vec<usize> = (0..lanes.len()).collect();
+    let mut dice = ChaCha8Rng::seed_from_u64(flags.seed);
     for frame in 0..flags.frames {
+        // Every other frame takes the last one's order backwards: nobody goes first more often,
+        // and of two, each goes first in every other frame or twice in a row at most.
+        if frame.is_multiple_of(2) {
+            order.shuffle(&mut dice);
+        } else {
+            order.reverse();
+        }
         scenario.step();
         let view = scenario.view(frame, flags)?;
-        for n in 0..count {
-            lanes[(frame as usize + n) % count].frame(&scenario.world, &view, &painter)?;
+        for &lane in &order {
+            lanes[lane].frame(&scenario.world, &view, &painter)?;
             tick();
         }
         if let Some(first) = lanes.first() {

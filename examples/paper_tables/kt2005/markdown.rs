@@ -129,8 +129,9 @@ fn details(outcomes: &[Outcome]) -> String {
 
 fn notes(flags: &Flags, outcomes: &[Outcome]) -> String {
     let mut notes = "\
-        - Counts are the same on every machine. Times are those of this one, which draws on the CPU; the \
-        paper's machine was an Athlon MP 2600+ with a GeForce 6800 GT, so only ratios compare.\n\
+        - Times are those of this machine, which draws on the CPU; the paper's was an Athlon MP 2600+ with a \
+        GeForce 6800 GT, so only ratios compare. Counts hardly depend on the machine: only dials that are \
+        `auto` weigh the times seen.\n\
         - *Tree's share* is the time for placing, refitting, splitting and merging over all time (the paper: \
         0.2 % to nearly 30 %). *Waves* are the times that a frame waits for answers.\n\
         - The paper's power plant is the one of the University of North Carolina; ours is generated, with as \
