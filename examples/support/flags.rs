@@ -11,11 +11,16 @@ use tercet::geom::Viewport;
 use tercet::policy::{self, Policy};
 use tercet::tree::TreeConfig;
 
+use super::program::Program;
+
+/// What culls, unless the command line says otherwise.
+const DEFAULT_POLICY: &str = "dual-query";
+
 /// What the command line says.
 #[derive(Clone, Debug, Parser)]
 pub struct Flags {
     /// The culling algorithm; see the list below
-    #[arg(long, value_name = "NAME", default_value = "dual-query")]
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_POLICY)]
     pub policy: String,
 
     /// Set dials of the policy, the tree or the example by name; see the lists below
@@ -98,12 +103,18 @@ impl Flags {
 
     /// As [`Flags::parse`], with flags of the example's own.
     pub fn parse_with<More: Args>(example: &'static str, about: &'static str) -> (Self, More) {
-        let command = command::<More>(example, about);
+        Self::parse_for::<More>(&Program::demo(example, about))
+    }
+
+    /// The same for a program that is no demo.
+    pub fn parse_for<More: Args>(program: &Program) -> (Self, More) {
+        let command = command::<More>(program);
         let matches = command.clone().get_matches();
         let mut flags = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         let more = More::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
-        flags.example = example;
-        if let Err(error) = flags.check() {
+        flags.example = program.name;
+        flags.full_detail |= program.full_detail;
+        if let Err(error) = program.check(&matches).and_then(|()| flags.check()) {
             command.clone().error(ErrorKind::InvalidValue, error).exit();
         }
         (flags, more)
@@ -213,23 +224,25 @@ fn is_own_dial(key: &str) -> bool {
 
 /// The command with an example's own flags. Its name and purpose come last: adding flags brings
 /// the doc comment of their type along.
-fn command<More: Args>(example: &'static str, about: &'static str) -> Command {
-    More::augment_args(Flags::command()).name(example).about(about).after_long_help(catalogue(example))
+fn command<More: Args>(program: &Program) -> Command {
+    program.adapt(More::augment_args(Flags::command())).after_long_help(catalogue(program))
 }
 
 /// What stands below the flags in `--help`.
-fn catalogue(example: &str) -> String {
-    let run = format!("cargo run --release --example {example}");
-    let mut text = format!(
-        "Examples:\n  \
-         {run}\n      the whole run, with its figures and pictures\n  \
-         {run} -- --frames 60 --oracle\n      check each frame against the exact visible set\n  \
-         {run} -- --policy frustum\n      what the view frustum alone would leave to draw\n  \
-         {run} -- --set preset=paper\n      the tree with the rule and the constants of the 2005 paper\n\n\
-         Policies: {}\n",
-        policy::NAMES.join(", ")
-    );
-    for name in policy::NAMES {
+fn catalogue(program: &Program) -> String {
+    let run = format!("cargo run --release --example {}", program.name);
+    let mut text = "Examples:\n".to_owned();
+    for (flags, effect) in program.examples {
+        let separator = if flags.is_empty() { "" } else { " -- " };
+        let _ = writeln!(text, "  {run}{separator}{flags}\n      {effect}");
+    }
+    let names = if program.takes("policy") {
+        let _ = writeln!(text, "\nPolicies: {}", policy::NAMES.join(", "));
+        policy::NAMES
+    } else {
+        &[DEFAULT_POLICY]
+    };
+    for name in names {
         let dials = policy::by_name(name).map(|policy| policy.dials()).unwrap_or_default();
         if !dials.is_empty() {
             list(&mut text, &format!("Dials of the policy {name}"), &dials);
@@ -242,7 +255,8 @@ fn catalogue(example: &str) -> String {
         value: value.to_string(),
         about: dial.about.to_owned(),
     };
-    let own = [own(MAX_ERROR, Detail::default().max_error_px), own(FLIGHT_END, 1.0)];
+    let detail = if program.full_detail { Detail::FULL } else { Detail::default() };
+    let own = [own(MAX_ERROR, detail.max_error_px), own(FLIGHT_END, 1.0)];
     list(&mut text, "Dials of the example", &own);
     text.truncate(text.trim_end().len());
     text
@@ -286,7 +300,7 @@ mod tests {
 
     #[test]
     fn the_command_is_well_formed() {
-        let command = command::<NoMore>("example", "What it shows.");
+        let command = command::<NoMore>(&Program::demo("example", "What it shows."));
         assert_eq!(command.get_about().map(ToString::to_string).as_deref(), Some("What it shows."));
         command.debug_assert();
     }

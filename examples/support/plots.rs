@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::canvas::{self, FAINT, GRID, INK, Key, Sheet, px, text};
+use super::canvas::{self, FAINT, INK, Key, px, text};
+use super::chart::{axes, nice_top};
 use super::report::{FrameRecord, Summary, percentile};
 
 const SIZE: (u32, u32) = (1200, 620);
@@ -120,49 +119,4 @@ fn subtitle(summary: &Summary) -> String {
         "{} · policy {} · {} queries · {width} × {height} · seed {}",
         summary.scene, summary.policy, summary.backend, summary.seed
     )
-}
-
-type Chart<'a, Y> = ChartContext<'a, BitMapBackend<'a>, Cartesian2d<RangedCoordf64, Y>>;
-
-fn axes<'a, Y>(
-    area: &Sheet<'a>,
-    frames: usize,
-    range: impl AsRangedCoord<CoordDescType = Y, Value = f64>,
-    unit: &str,
-) -> anyhow::Result<Chart<'a, Y>>
-where
-    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
-{
-    let last = frames.saturating_sub(1).max(1) as f64;
-    let mut chart = ChartBuilder::on(area)
-        .margin(px(20))
-        .margin_top(px(6))
-        .x_label_area_size(px(44))
-        .y_label_area_size(px(66))
-        .build_cartesian_2d(0.0..last, range)?;
-    chart
-        .configure_mesh()
-        .disable_x_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(px(1) as u32))
-        .axis_style(FAINT.stroke_width(px(1) as u32))
-        .label_style(text(13, FAINT))
-        .axis_desc_style(text(14, INK))
-        .x_desc("frame")
-        .y_desc(unit)
-        .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| format!("{y}"))
-        .draw()?;
-    Ok(chart)
-}
-
-/// The least of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten that is not below `x`.
-fn nice_top(x: f64) -> f64 {
-    let x = x.max(1e-3);
-    let power = 10f64.powf(x.log10().floor());
-    [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0]
-        .into_iter()
-        .map(|step| step * power)
-        .find(|&top| top >= x)
-        .unwrap_or(10.0 * power)
 }

@@ -1,12 +1,14 @@
 //! What a run is compared with: the exact visible set, and what reference policies are to draw.
 
-use hecs::World;
+use std::collections::HashSet;
+
+use hecs::{Entity, World};
 use tercet::Culler;
 use tercet::geom::View;
 use tercet::policy::{Policy, Recording, StopAndWait};
 use tercet::query::oracle::{Oracle, Truth};
 use tercet::query::software::SoftwareQueries;
-use tercet::scene::{ObjectId, ObjectSet, Scene};
+use tercet::scene::{ObjectId, ObjectRef, Scene};
 
 use super::painter::Painter;
 use super::report::FrameRecord;
@@ -19,6 +21,8 @@ pub struct Reference {
     compare: bool,
     oracle: Oracle,
     truth: Option<Truth>,
+    /// Whose pixels the truth shows.
+    seen: Vec<Entity>,
     stop_and_wait: Culler<StopAndWait>,
     queries: SoftwareQueries,
 }
@@ -31,6 +35,7 @@ impl Reference {
             compare,
             oracle: Oracle::new(),
             truth: None,
+            seen: Vec::new(),
             stop_and_wait: Culler::new(StopAndWait::default()),
             queries: SoftwareQueries::new(),
         }
@@ -42,10 +47,7 @@ impl Reference {
         let painter = self.painter;
         let recording = eye.policy().wants_recorded();
         if self.compare || recording == Some(Recording::ExactSet) {
-            let truth = self.oracle.look(scene, view, |pass, objects| {
-                painter.draw(world, view, pass, objects);
-            })?;
-            self.truth = Some(truth);
+            self.find_truth(scene, world, view)?;
         }
         match recording {
             None => {}
@@ -66,18 +68,32 @@ impl Reference {
         Ok(())
     }
 
-    /// Fills the oracle's figures in, if every frame is compared.
-    pub fn judge(&self, scene: &Scene, eye: &Eye, queries: &SoftwareQueries, record: &mut FrameRecord) {
+    /// Finds out what this frame is compared with, if every frame is; for runs in which no policy
+    /// is itself a reference.
+    pub fn compare(&mut self, scene: &Scene, world: &World, view: &View) -> anyhow::Result<()> {
+        if self.compare { self.find_truth(scene, world, view) } else { Ok(()) }
+    }
+
+    /// Fills the oracle's figures in, if every frame is compared. `eye` may have looked at another
+    /// scene of the same world: entities are compared.
+    pub fn judge(&self, eye: &Eye, queries: &SoftwareQueries, record: &mut FrameRecord) {
         let (true, Some(truth)) = (self.compare, &self.truth) else { return };
-        let mut drawn = ObjectSet::default();
-        for object in eye.visible() {
-            drawn.insert(object.id);
-        }
-        let is_lost = |id: &ObjectId| truth.exact.contains(*id) && !drawn.contains(*id);
-        let lost = scene.objects().map(|o| o.object.id).filter(is_lost).count();
+        let drawn: HashSet<Entity> = eye.visible().iter().map(|object| object.entity()).collect();
+        let lost = self.seen.iter().filter(|entity| !drawn.contains(entity)).count();
         record.exact_visible = Some(truth.exact.len() as u32);
         record.box_visible = Some(truth.box_visible.len() as u32);
         record.false_culls = Some(lost as u32);
         record.wrong_pixels = Some(self.oracle.wrong_pixels(queries));
+    }
+
+    fn find_truth(&mut self, scene: &Scene, world: &World, view: &View) -> anyhow::Result<()> {
+        let painter = self.painter;
+        let truth = self.oracle.look(scene, view, |pass, objects| {
+            painter.draw(world, view, pass, objects);
+        })?;
+        let exact = scene.objects().map(|o| o.object).filter(|o| truth.exact.contains(o.id));
+        self.seen = exact.map(ObjectRef::entity).collect();
+        self.truth = Some(truth);
+        Ok(())
     }
 }

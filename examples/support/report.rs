@@ -4,7 +4,15 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::Context;
+use hecs::World;
 use serde::Serialize;
+use tercet::draw::Drawable;
+use tercet::query::QueryBackend;
+use tercet::query::software::SoftwareQueries;
+use tercet::scene::Bounds;
+use tercet::tree::TreeStats;
+
+use super::flags::Flags;
 
 /// One frame: one line of `frames.csv`. Times in milliseconds; the oracle's figures are empty
 /// without `--oracle`.
@@ -190,6 +198,40 @@ pub struct MeanMax {
     pub max: f64,
 }
 
+impl Setting {
+    /// The setting of a run over a world that has been spawned.
+    pub fn new(flags: &Flags, scene: &str, policy: &str, world: &World) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            objects: world.query::<&Bounds>().iter().count(),
+            triangles: world.query::<&Drawable>().iter().map(|d| d.mesh.triangle_count() as u64).sum(),
+            policy: policy.to_owned(),
+            backend: SoftwareQueries::new().name().to_owned(),
+            adapter: None,
+            viewport: [flags.size.0, flags.size.1],
+            seed: flags.seed,
+        }
+    }
+}
+
+impl TreeFigures {
+    /// The figures of `frames` frames from the counters after the first frame, which builds the
+    /// tree and is not counted among the events, and after the last.
+    pub fn new(built: &TreeStats, now: &TreeStats, frames: usize) -> Self {
+        let frames = (frames as f64 - 1.0).max(1.0);
+        let each = |before: u64, after: u64| round((after - before) as f64 / frames);
+        Self {
+            nodes: now.nodes,
+            depth: now.depth,
+            splits: each(built.splits, now.splits),
+            merges: each(built.merges, now.merges),
+            moves: each(built.moves, now.moves),
+            flips: each(built.flips, now.flips),
+            maintenance_share: 0.0,
+        }
+    }
+}
+
 impl Summary {
     /// Adds up the frames. `tree` may leave its share of the frame's time out: it is filled in.
     ///
@@ -241,16 +283,19 @@ impl Summary {
 
 /// Writes `frames.csv` and `summary.json` into a folder that exists.
 pub fn write(out: &Path, summary: &Summary, frames: &[FrameRecord]) -> anyhow::Result<()> {
-    let path = out.join("frames.csv");
-    let mut csv =
-        csv::Writer::from_path(&path).with_context(|| format!("cannot write {}", path.display()))?;
-    for frame in frames {
-        csv.serialize(frame)?;
-    }
-    csv.flush()?;
+    write_csv(&out.join("frames.csv"), frames)?;
     let path = out.join("summary.json");
     let json = serde_json::to_string_pretty(summary)? + "\n";
     fs::write(&path, json).with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Writes a table with a line a row, under a line of the fields' names.
+pub fn write_csv<Row: Serialize>(path: &Path, rows: impl IntoIterator<Item = Row>) -> anyhow::Result<()> {
+    let mut csv = csv::Writer::from_path(path).with_context(|| format!("cannot write {}", path.display()))?;
+    for row in rows {
+        csv.serialize(row)?;
+    }
+    Ok(csv.flush()?)
 }
 
 /// Percentile by nearest rank; `percent` in 0 to 100.

@@ -9,12 +9,10 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use hecs::World;
 use indicatif::{ProgressBar, ProgressStyle};
-use tercet::draw::Drawable;
 use tercet::geom::{Frustum, View};
 use tercet::policy::Policy;
-use tercet::query::QueryBackend;
 use tercet::query::software::SoftwareQueries;
-use tercet::scene::{Bounds, Scene, SyncReport};
+use tercet::scene::{Scene, SyncReport};
 use tercet::tree::TreeStats;
 use tercet::{Culler, FrameStats};
 
@@ -62,28 +60,47 @@ pub struct Frame<'a> {
     pub triangles: u64,
 }
 
+impl Frame<'_> {
+    /// Its figures, but for those of the oracle.
+    pub fn record(&self, number: u32) -> FrameRecord {
+        let Frame { scene, view, synced, stats, .. } = self;
+        let ms = |time: Duration| report::round(time.as_secs_f64() * 1e3);
+        let tree = synced.tree_time + self.adapted;
+        let cull = stats.policy + stats.draw + stats.query + stats.wait;
+        let frustum = Frustum::new(view);
+        let inside = |bounds: Option<tercet::geom::Aabb>| bounds.is_none_or(|b| frustum.intersects(&b));
+        FrameRecord {
+            frame: number,
+            frame_ms: ms(synced.sync_time + tree + cull),
+            sync_ms: ms(synced.sync_time),
+            tree_ms: ms(tree),
+            policy_ms: ms(stats.policy),
+            draw_ms: ms(stats.draw),
+            query_ms: ms(stats.query),
+            wait_ms: ms(stats.wait),
+            drawn: stats.drawn,
+            drawn_triangles: self.triangles,
+            in_frustum: scene.objects().filter(|o| inside(o.bounds)).count() as u32,
+            queries: stats.queries,
+            query_boxes: stats.query_boxes,
+            waves: stats.waves,
+            state_changes: stats.state_changes,
+            ..Default::default()
+        }
+    }
+}
+
 impl Run {
     /// Prepares to measure `flags.frames` frames of a world that has been spawned.
     pub fn new(flags: &Flags, scene_name: &str, world: &World) -> anyhow::Result<Self> {
-        let objects = world.query::<&Bounds>().iter().count();
-        let triangles = world.query::<&Drawable>().iter().map(|d| d.mesh.triangle_count() as u64).sum();
-        let setting = Setting {
-            scene: scene_name.to_owned(),
-            objects,
-            triangles,
-            policy: flags.policy.clone(),
-            backend: SoftwareQueries::new().name().to_owned(),
-            adapter: None,
-            viewport: [flags.size.0, flags.size.1],
-            seed: flags.seed,
-        };
+        let setting = Setting::new(flags, scene_name, &flags.policy, world);
         // Now, not after a long run: where would its figures go?
         let out = flags.out();
         fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
         println!(
             "{scene_name}: {} objects, {} triangles; policy {}, {} frames",
-            table::count(objects as f64),
-            table::count(triangles as f64),
+            table::count(setting.objects as f64),
+            table::count(setting.triangles as f64),
             flags.policy,
             flags.frames
         );
@@ -122,36 +139,13 @@ impl Run {
 
     /// Takes a frame's figures.
     pub fn record(&mut self, frame: Frame<'_>) {
-        let Frame { scene, view, eye, synced, stats, .. } = &frame;
-        let ms = |time: Duration| report::round(time.as_secs_f64() * 1e3);
-        let tree = synced.tree_time + frame.adapted;
-        let cull = stats.policy + stats.draw + stats.query + stats.wait;
-        let frustum = Frustum::new(view);
-        let inside = |bounds: Option<tercet::geom::Aabb>| bounds.is_none_or(|b| frustum.intersects(&b));
-        let mut record = FrameRecord {
-            frame: self.records.len() as u32,
-            frame_ms: ms(synced.sync_time + tree + cull),
-            sync_ms: ms(synced.sync_time),
-            tree_ms: ms(tree),
-            policy_ms: ms(stats.policy),
-            draw_ms: ms(stats.draw),
-            query_ms: ms(stats.query),
-            wait_ms: ms(stats.wait),
-            drawn: stats.drawn,
-            drawn_triangles: frame.triangles,
-            in_frustum: scene.objects().filter(|o| inside(o.bounds)).count() as u32,
-            queries: stats.queries,
-            query_boxes: stats.query_boxes,
-            waves: stats.waves,
-            state_changes: stats.state_changes,
-            ..Default::default()
-        };
-        self.reference.judge(scene, eye, frame.queries, &mut record);
+        let mut record = frame.record(self.records.len() as u32);
+        self.reference.judge(frame.eye, frame.queries, &mut record);
         if self.records.is_empty() {
-            self.tree_built = scene.tree().stats();
+            self.tree_built = frame.scene.tree().stats();
         }
         self.records.push(record);
-        self.view = Some((*view).clone());
+        self.view = Some(frame.view.clone());
         self.bar.inc(1);
     }
 
@@ -164,7 +158,8 @@ impl Run {
         let view = self.view.as_ref().context("the run is not complete: no frame was measured")?;
         let taken = self.started.elapsed();
         let out = self.flags.out();
-        let summary = Summary::new(self.setting.clone(), self.tree(scene), &self.records);
+        let tree = TreeFigures::new(&self.tree_built, &scene.tree().stats(), self.records.len());
+        let summary = Summary::new(self.setting.clone(), tree, &self.records);
         report::write(&out, &summary, &self.records)?;
         plots::write(&out, &summary, &self.records)?;
         top_view::write(&out, &summary, scene, view, eye)?;
@@ -177,21 +172,5 @@ impl Run {
             out.display()
         );
         Ok(summary)
-    }
-
-    /// The tree's figures; those of events are per frame, the first one, which builds, left out.
-    fn tree(&self, scene: &Scene) -> TreeFigures {
-        let (built, now) = (self.tree_built, scene.tree().stats());
-        let frames = (self.records.len() as f64 - 1.0).max(1.0);
-        let each = |before: u64, after: u64| report::round((after - before) as f64 / frames);
-        TreeFigures {
-            nodes: now.nodes,
-            depth: now.depth,
-            splits: each(built.splits, now.splits),
-            merges: each(built.merges, now.merges),
-            moves: each(built.moves, now.moves),
-            flips: each(built.flips, now.flips),
-            maintenance_share: 0.0,
-        }
     }
 }

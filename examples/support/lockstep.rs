@@ -1,0 +1,132 @@
+//! Several ways of culling the same world, side by side: each frame is run by all of them before
+//! the next one comes, and their order changes from frame to frame. What else the machine does
+//! meanwhile then hits all of them alike.
+
+use anyhow::ensure;
+use hecs::World;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use tercet::Culler;
+use tercet::geom::View;
+use tercet::policy::Policy;
+use tercet::query::software::SoftwareQueries;
+use tercet::scene::{Scene, SceneConfig};
+use tercet::tree::{TreeConfig, TreeStats};
+
+use super::flags::Flags;
+use super::painter::Painter;
+use super::reference::Reference;
+use super::report::{FrameRecord, Setting, Summary, TreeFigures};
+use super::run::{Eye, Frame};
+use super::scenario::Scenario;
+
+/// One way of culling: a scene, an eye and a backend of its own.
+pub struct Lane {
+    scene: Scene,
+    eye: Eye,
+    queries: SoftwareQueries,
+    records: Vec<FrameRecord>,
+    /// The tree's counters after the first frame, which builds it.
+    built: TreeStats,
+}
+
+/// What a lane measured.
+pub struct Measured {
+    /// All frames together.
+    pub summary: Summary,
+    /// Frame by frame.
+    pub frames: Vec<FrameRecord>,
+}
+
+impl Lane {
+    /// A lane that has seen nothing yet.
+    ///
+    /// # Errors
+    /// For a policy that draws what a reference found: there is nothing to compare.
+    pub fn new(policy: Box<dyn Policy>, tree: TreeConfig) -> anyhow::Result<Self> {
+        ensure!(
+            policy.wants_recorded().is_none(),
+            "the policy {} only draws what another one found; choose one that culls",
+            policy.name()
+        );
+        Ok(Self {
+            scene: Scene::new(SceneConfig { tree, ..Default::default() }),
+            eye: Culler::new(policy),
+            queries: SoftwareQueries::new(),
+            records: Vec::new(),
+            built: TreeStats::default(),
+        })
+    }
+
+    /// Runs one frame, clocked as in the demos: sync, cull with its draws, adapt.
+    fn frame(&mut self, world: &World, view: &View, painter: &Painter) -> anyhow::Result<()> {
+        let Self { scene, eye, queries, .. } = self;
+        let synced = scene.sync(world);
+        let mut triangles = 0;
+        let stats = eye.frame(scene, view, queries, |pass, objects| {
+            triangles += painter.draw(world, view, pass, objects);
+        })?;
+        let adapted = scene.adapt([&mut *eye]);
+        let frame = Frame { scene, view, eye, queries, synced, stats, adapted, triangles };
+        let record = frame.record(self.records.len() as u32);
+        if self.records.is_empty() {
+            self.built = self.scene.tree().stats();
+        }
+        self.records.push(record);
+        Ok(())
+    }
+
+    fn finish(self, setting: Setting) -> Measured {
+        let tree = TreeFigures::new(&self.built, &self.scene.tree().stats(), self.records.len());
+        Measured { summary: Summary::new(setting, tree, &self.records), frames: self.records }
+    }
+}
+
+/// Runs all lanes through a scenario and returns what each measured, in their order. `tick` is
+/// called whenever a lane has done a frame.
+///
+/// With `--oracle`, it looks once a frame, after all lanes, and judges each.
+pub fn run(
+    mut scenario: Scenario,
+    flags: &Flags,
+    mut lanes: Vec<Lane>,
+    mut tick: impl FnMut(),
+) -> anyhow::Result<Vec<Measured>> {
+    let painter = Painter { detail: flags.detail()? };
+    let mut reference = Reference::new(painter, flags.oracle);
+    let mut order: Vec<usize> = (0..lanes.len()).collect();
+    let mut dice = ChaCha8Rng::seed_from_u64(flags.seed);
+    for frame in 0..flags.frames {
+        // Every other frame takes the last one's order backwards: nobody goes first more often,
+        // and of two, each goes first in every other frame or twice in a row at most.
+        if frame.is_multiple_of(2) {
+            order.shuffle(&mut dice);
+        } else {
+            order.reverse();
+        }
+        scenario.step();
+        let view = scenario.view(frame, flags)?;
+        for &lane in &order {
+            lanes[lane].frame(&scenario.world, &view, &painter)?;
+            tick();
+        }
+        if let Some(first) = lanes.first() {
+            reference.compare(&first.scene, &scenario.world, &view)?;
+        }
+        for Lane { eye, queries, records, .. } in &mut lanes {
+            if let Some(record) = records.last_mut() {
+                reference.judge(eye, queries, record);
+            }
+        }
+    }
+    let setting =
+        |lane: &Lane| Setting::new(flags, &scenario.name, lane.eye.policy().name(), &scenario.world);
+    Ok(lanes
+        .into_iter()
+        .map(|lane| {
+            let setting = setting(&lane);
+            lane.finish(setting)
+        })
+        .collect())
+}

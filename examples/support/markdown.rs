@@ -1,0 +1,68 @@
+//! Pieces of the pages that programs write.
+
+use std::fmt::Write;
+
+/// What was typed to run this program, as it can be typed anywhere: without this machine's paths.
+pub fn command(example: &str) -> String {
+    command_of(example, std::env::args().skip(1))
+}
+
+/// A table: a header, and rows of as many cells.
+pub fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let mut text = format!("| {} |\n|{}\n", header.join(" | "), "---|".repeat(header.len()));
+    for row in rows {
+        let _ = writeln!(text, "| {} |", row.join(" | "));
+    }
+    text
+}
+
+/// One figure over another, to two digits.
+pub fn ratio(a: f64, b: f64) -> String {
+    known((b > 0.0).then(|| format!("{:.2}", a / b)))
+}
+
+/// A share of 1 in percent.
+pub fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// A figure, or a dash for one that was not measured.
+pub fn known(figure: Option<String>) -> String {
+    figure.unwrap_or_else(|| "–".to_owned())
+}
+
+fn command_of(example: &str, mut arguments: impl Iterator<Item = String>) -> String {
+    let mut line = format!("cargo run --release --example {example}");
+    let mut separator = " -- ";
+    while let Some(argument) = arguments.next() {
+        if argument == "--out" {
+            arguments.next();
+        } else if !argument.starts_with("--out=") {
+            line += separator;
+            line += &argument;
+            separator = " ";
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_has_no_paths() {
+        let command = |line: &str| command_of("x", line.split_whitespace().map(str::to_owned));
+        assert_eq!(command("--out /a"), "cargo run --release --example x");
+        assert_eq!(
+            command("--frames 6 --out /a -b --out=/c"),
+            "cargo run --release --example x -- --frames 6 -b"
+        );
+    }
+
+    #[test]
+    fn a_table_has_a_rule_below_its_header() {
+        let rows = [vec!["1".to_owned(), "2".to_owned()]];
+        assert_eq!(table(&["a", "b"], rows), "| a | b |\n|---|---|\n| 1 | 2 |\n");
+    }
+}
