@@ -131,7 +131,7 @@ impl Policy for DualQuery {
 
     fn begin(&mut self, cx: &Context<'_>) {
         self.history.follow(cx.tree);
-        self.turnover.fade();
+        self.turnover.begin();
         self.front.clear();
         self.held.clear();
         self.wave.clear();
@@ -319,11 +319,16 @@ impl DualQuery {
         self.take_as_visible(cx, node, mask);
     }
 
-    /// An answer about a leaf that was visible says how often such leaves become hidden.
+    /// An answer about a leaf says how often leaves become hidden, and visible again.
     fn note_turnover(&mut self, cx: &Context<'_>, node: NodeId, visible: bool) {
         let state = self.history.get(node);
-        if state.visible && state.asked_at != 0 && cx.tree.is_leaf(node) {
-            self.turnover.note(state.share, cx.frame.wrapping_sub(state.asked_at), !visible);
+        if !cx.tree.is_leaf(node) || state.frame == 0 {
+            return;
+        }
+        if !state.visible {
+            self.turnover.was_hidden(!visible);
+        } else if state.asked_at != 0 {
+            self.turnover.was_visible(state.share, cx.frame.wrapping_sub(state.asked_at), !visible);
         }
     }
 

@@ -2,13 +2,19 @@
 //!
 //! The 2005 paper says only that nodes seen visible in several recent frames are queried less
 //! often. Asking about a leaf of `n` objects every `t` frames costs `q / t` a frame, where `q` is
-//! the cost of a question in hidden objects drawn ([`Costs`]). If such a leaf becomes hidden with
-//! probability `p` a frame, it is then drawn in vain for `t / 2` frames on average, which costs
-//! `n p t / 2` a frame. The sum is least at `t = √(2 q / (n p))`.
+//! the cost of a question in hidden objects drawn ([`Costs`]). Such a leaf becomes hidden with
+//! probability `p` a frame, and stays so for `s` frames on the mean. Of those frames it is drawn
+//! in vain until the next question, a part `m = 1 − s (1 − (1 − 1/s)ᵗ) / t`, if hidden spells are
+//! without memory, and asked about in all others, since only an answer of this very frame can
+//! cull it. So a frame costs
 //!
-//! `q` and `p` are seen. `p` is seen by the *visible share* of the leaf's box, the dual answer: a
-//! leaf of which half is visible will hardly be hidden in the next frame, one of which a hundredth
-//! is visible may well be.
+//! ```text
+//! q / t  +  p s (n m + q (1 − m))
+//! ```
+//!
+//! and the `t` is taken for which that is least. `q`, `p` and `s` are seen; `p` by the *visible
+//! share* of the leaf's box, the dual answer: a leaf of which half is visible will hardly be hidden
+//! in the next frame, one of which a hundredth is visible may well be.
 
 use crate::Error;
 use crate::costs::Costs;
@@ -36,9 +42,6 @@ pub(super) struct Seen {
 }
 
 impl Skip {
-    /// Frames that [`Skip::Auto`] skips at most.
-    const MOST: u32 = 30;
-
     pub(super) fn parse(key: &str, value: &str) -> Result<Self, Error> {
         match value.trim() {
             "auto" => Ok(Self::Auto),
@@ -58,11 +61,10 @@ impl Skip {
         match self {
             Self::AtMost(n) => leaf.streak.min(n),
             Self::Auto => {
-                let p = turnover.rate(leaf.share);
-                let every = (2.0 * costs.question() / (leaf.objects.max(1) as f32 * p)).sqrt();
+                let every = turnover.best_interval(leaf.share, leaf.objects, costs.question());
                 // A leaf that has only just become visible may as soon be hidden again.
                 let trust = (1 << leaf.streak.min(5)) - 1;
-                let skip = (every as u32).saturating_sub(1).min(Self::MOST).min(trust);
+                let skip = (every - 1).min(trust);
                 // Leaves that became visible together must not all be asked about together: up to
                 // a third is taken off, by node.
                 skip - (leaf.node.index().wrapping_mul(0x9E37_79B1) >> 16) as u32 % (skip / 3 + 1)
@@ -90,17 +92,34 @@ impl Share {
     }
 }
 
-/// How often leaves that are visible become hidden, as seen lately, by the share last seen.
+/// Frames from question to question that are considered.
+const INTERVALS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 23, 31];
+
+/// How often leaves become hidden and visible again, as seen lately.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turnover {
+    /// Of leaves that were visible: those hidden now, by the share last seen, and the frames since.
     hidden: [f32; Share::COUNT],
     frames: [f32; Share::COUNT],
+    /// Of leaves that were hidden: those visible now, and those asked about.
+    shown: f32,
+    asked: f32,
+    /// The mean hidden spell, and for each interval the part of it that goes unnoticed.
+    spell: f32,
+    unnoticed: [f32; INTERVALS.len()],
 }
 
 impl Default for Turnover {
     /// One leaf in eight, after one frame.
     fn default() -> Self {
-        Self { hidden: [1.0; Share::COUNT], frames: [8.0; Share::COUNT] }
+        Self {
+            hidden: [1.0; Share::COUNT],
+            frames: [8.0; Share::COUNT],
+            shown: 1.0,
+            asked: 8.0,
+            spell: 0.0,
+            unnoticed: [0.0; INTERVALS.len()],
+        }
     }
 }
 
@@ -108,20 +127,41 @@ impl Turnover {
     /// What a frame leaves of the ones before it.
     const FADE: f32 = 0.9;
 
-    /// To be called once a frame.
-    pub(super) fn fade(&mut self) {
-        self.hidden.iter_mut().chain(&mut self.frames).for_each(|sum| *sum *= Self::FADE);
+    /// Starts a frame.
+    pub(super) fn begin(&mut self) {
+        let visible = self.hidden.iter_mut().chain(&mut self.frames);
+        visible.chain([&mut self.shown, &mut self.asked]).for_each(|sum| *sum *= Self::FADE);
+        self.spell = (self.asked + 0.08) / (self.shown + 0.01);
+        for (unnoticed, t) in self.unnoticed.iter_mut().zip(INTERVALS) {
+            let stays = 1.0 - 1.0 / self.spell.max(1.0);
+            *unnoticed = 1.0 - self.spell.max(1.0) * (1.0 - stays.powi(t as i32)) / t as f32;
+        }
     }
 
     /// Of a leaf of which `share` was visible `frames` ago, nothing is visible now, or something.
-    pub(super) fn note(&mut self, share: Share, frames: u32, hidden: bool) {
+    pub(super) fn was_visible(&mut self, share: Share, frames: u32, is_hidden: bool) {
         self.frames[share.0 as usize] += frames.max(1) as f32;
-        self.hidden[share.0 as usize] += f32::from(u8::from(hidden));
+        self.hidden[share.0 as usize] += f32::from(u8::from(is_hidden));
+    }
+
+    /// Of a leaf that was hidden in the last frame, nothing is visible now, or something.
+    pub(super) fn was_hidden(&mut self, is_hidden: bool) {
+        self.asked += 1.0;
+        self.shown += f32::from(u8::from(!is_hidden));
     }
 
     /// The probability a frame, greater than 0: where nothing has been seen lately, one in eight.
     fn rate(&self, share: Share) -> f32 {
         (self.hidden[share.0 as usize] + 0.01) / (self.frames[share.0 as usize] + 0.08)
+    }
+
+    /// The interval from question to question that costs least; see the module's documentation.
+    fn best_interval(&self, share: Share, objects: usize, question: f32) -> u32 {
+        let (n, hidden) = (objects.max(1) as f32, self.rate(share) * self.spell);
+        let cost = |(t, m): (u32, f32)| question / t as f32 + hidden * (n * m + question * (1.0 - m));
+        let all = INTERVALS.into_iter().zip(self.unnoticed);
+        let best = all.map(|pair| (cost(pair), pair.0)).min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or(1, |(_, t)| t)
     }
 }
 
@@ -139,11 +179,13 @@ mod tests {
         Seen { node: tree.root(), objects, streak, share: Share(0) }
     }
 
-    fn turnover(hidden: u32, of: u32) -> Turnover {
+    /// Of `of` visible leaves a frame, `hidden` become hidden; hidden ones stay so for `spell`.
+    fn turnover(hidden: u32, of: u32, spell: u32) -> Turnover {
         let mut seen = Turnover::default();
         for _ in 0..100 {
-            seen.fade();
-            (0..of).for_each(|i| seen.note(Share(0), 1, i < hidden));
+            (0..of).for_each(|i| seen.was_visible(Share(0), 1, i < hidden));
+            (0..of).for_each(|i| seen.was_hidden(!i.is_multiple_of(spell)));
+            seen.begin();
         }
         seen
     }
@@ -153,28 +195,29 @@ mod tests {
         let frames = |objects, question, seen: &Turnover| {
             Skip::Auto.frames(leaf(objects, u32::MAX), &Costs::of(question), seen)
         };
-        // √(2 · 1 / (1 · 0.02)) = 10 frames from question to question; a third may be taken off.
-        let rare = turnover(20, 1000);
-        assert!((6..=9).contains(&frames(1, 1.0, &rare)), "{}", frames(1, 1.0, &rare));
-        assert!(frames(16, 1.0, &rare) <= 2, "a full leaf is asked about more often");
-        assert_eq!(frames(1, 0.01, &rare), 0, "questions that cost nothing are asked every frame");
-        assert_eq!(frames(1, 1.0, &turnover(900, 1000)), 0, "what changes every frame is asked every frame");
-        assert!(frames(1, 256.0, &turnover(0, 1000)) <= Skip::MOST);
+        // Long spells: about √(2 · 0.5 / (1.5 · 0.02)) = 6 frames; a third may be taken off.
+        let rare = turnover(20, 1000, 100);
+        assert!((3..=7).contains(&frames(2, 0.5, &rare)), "{}", frames(2, 0.5, &rare));
+        assert!(frames(16, 1.0, &rare) <= 3, "a full leaf is asked about more often");
+        assert!(frames(2, 1.0, &turnover(20, 1000, 4)) >= 20, "spells too short to be worth a question");
+        assert_eq!(frames(1, 0.004, &rare), 0, "questions that cost nothing are asked every frame");
+        assert_eq!(frames(8, 1.0, &turnover(900, 1000, 100)), 0, "what hides often is asked every frame");
+        assert!(frames(1, 2.0, &rare) >= 20, "a question that costs more than it can save");
     }
 
     #[test]
     fn what_is_hardly_visible_is_asked_about_more_often() {
-        let mut seen = turnover(0, 1000);
+        let mut seen = turnover(0, 1000, 100);
         let hardly = Share::of(Answer::Dual { visible: 3, total: 1000 });
-        (0..500).for_each(|i| seen.note(hardly, 1, i % 4 == 0));
-        let frames = |share| Skip::Auto.frames(Seen { share, ..leaf(1, 9) }, &Costs::of(1.0), &seen);
+        (0..500).for_each(|i| seen.was_visible(hardly, 1, i % 4 == 0));
+        let frames = |share| Skip::Auto.frames(Seen { share, ..leaf(1, 9) }, &Costs::of(0.5), &seen);
         let wholly = Share::of(Answer::Dual { visible: 900, total: 1000 });
         assert!(frames(hardly) <= 2 && frames(wholly) >= 20, "{} {}", frames(hardly), frames(wholly));
     }
 
     #[test]
     fn trust_must_grow_first() {
-        let (costs, seen) = (Costs::of(100.0), turnover(0, 1000));
+        let (costs, seen) = (Costs::of(100.0), turnover(0, 1000, 100));
         for streak in 0..4 {
             assert!(Skip::Auto.frames(leaf(1, streak), &costs, &seen) < 1 << streak);
             assert_eq!(Skip::AtMost(2).frames(leaf(1, streak), &costs, &seen), streak.min(2));
