@@ -123,7 +123,6 @@ impl Aabb {
     /// coordinate, with 8·2⁻²⁴ in place of γ₄, plus the least normal number for products that
     /// underflow, then rounded outward to f32.
     pub fn transformed(&self, target_from_source: &Affine3A) -> Self {
-        const GAMMA: f64 = 8.0 * (1.0 / 16_777_216.0);
         let m = target_from_source.matrix3;
         let t = target_from_source.translation;
         let (mut min, mut max) = (Vec3::ZERO, Vec3::ZERO);
@@ -138,12 +137,19 @@ impl Aabb {
                 high += a.max(b);
                 magnitude += a.abs().max(b.abs());
             }
-            let error = GAMMA * magnitude + f64::from(f32::MIN_POSITIVE);
+            let error = sum_error(magnitude);
             min[row] = f32_below(low - error);
             max[row] = f32_above(high + error);
         }
         Self::new(min, max)
     }
+}
+
+/// What an f32 sum of four products can be off by, if their magnitudes add up to at most
+/// `magnitude`; see [`Aabb::transformed`].
+pub(super) fn sum_error(magnitude: f64) -> f64 {
+    const GAMMA: f64 = 8.0 * (1.0 / 16_777_216.0);
+    GAMMA * magnitude + f64::from(f32::MIN_POSITIVE)
 }
 
 /// The greatest f32 that is not above `x`.

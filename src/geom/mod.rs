@@ -8,10 +8,12 @@ mod frustum;
 mod project;
 mod proxy;
 mod silhouette;
+mod support;
 mod view;
 
 pub use aabb::Aabb;
 pub use frustum::{Frustum, PlaneMask};
 pub use project::{Projected, ScreenRect, project};
 pub use proxy::{PixelRect, Proxy, Question};
+pub(crate) use support::Support;
 pub use view::{DepthDirection, DepthFormat, View, Viewport, projection};

@@ -69,7 +69,7 @@ impl Model {
     /// # Panics
     /// When there is no such mesh.
     pub fn place(&mut self, mesh: usize, world_from_object: Affine3A, color: [u8; 3]) {
-        let bounds = self.meshes[mesh].bounds().transformed(&world_from_object);
+        let bounds = self.meshes[mesh].bounds_under(&world_from_object);
         self.bounds = self.bounds.union(&bounds);
         self.objects.push(Placed { mesh, world_from_object, bounds, color, not_occluder: false });
     }

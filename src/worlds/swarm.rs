@@ -57,7 +57,7 @@ impl Swarm {
                 let motion = random_motion(&mut dice, &self.room, tall);
                 let color = COATS[dice.below(COATS.len())];
                 let world_from_object = motion.world_from_object(self.mesh.bounds().center());
-                let bounds = self.mesh.bounds().transformed(&world_from_object);
+                let bounds = self.mesh.bounds_under(&world_from_object);
                 (Bounds(bounds), Drawable { mesh: self.mesh.clone(), world_from_object, color }, motion)
             }))
             .for_each(drop);
@@ -72,7 +72,7 @@ impl Swarm {
         moving.into_iter_batched(BATCH).par_bridge().flatten_iter().for_each(|(bounds, drawable, motion)| {
             motion.advance(&self.room, dt);
             drawable.world_from_object = motion.world_from_object(pivot);
-            bounds.0 = drawable.mesh.bounds().transformed(&drawable.world_from_object);
+            bounds.0 = drawable.mesh.bounds_under(&drawable.world_from_object);
         });
     }
 }

@@ -106,12 +106,12 @@ impl Stage {
     fn shift(&mut self, entity: Entity, by: Vec3) {
         let moved = self.world.query_one_mut::<&mut Drawable>(entity).map(|d| {
             let moved = Affine3A::from_translation(by) * d.world_from_object;
-            let bounds = d.mesh.bounds().transformed(&moved);
+            let bounds = d.mesh.bounds_under(&moved);
             // An object that would leave the range of f32 stays where it is.
             if bounds.is_valid() {
                 d.world_from_object = moved;
             }
-            Bounds(d.mesh.bounds().transformed(&d.world_from_object))
+            Bounds(d.mesh.bounds_under(&d.world_from_object))
         });
         if let Ok(bounds) = moved {
             self.world.insert_one(entity, bounds).expect("the entity is alive");
