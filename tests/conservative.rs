@@ -5,73 +5,16 @@
 mod support;
 
 use rayon::prelude::*;
+use support::lying::Lying;
 use support::stage::Stage;
-use support::{Outcome, Shown, run};
-use tercet::Error;
+use support::suite::{FRAMES, SCREEN, assert_culls_most, culls_hidden, dialled, is_default, outcome};
+use support::{Outcome, run};
 use tercet::draw::Detail;
-use tercet::geom::{Proxy, View, Viewport};
-use tercet::policy::{self, Policy};
-use tercet::query::software::{SoftwarePass, SoftwareQueries};
-use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
-use tercet::tree::{Straddlers, TightBoxes, TreeConfig};
+use tercet::geom::Viewport;
+use tercet::policy;
+use tercet::query::software::SoftwareQueries;
+use tercet::tree::TreeConfig;
 use tercet::worlds::{self, Model, Pathology};
-
-const FRAMES: u32 = 24;
-const SCREEN: Viewport = Viewport::new(160, 90);
-
-/// Policies that cull what is hidden, not only what is outside the frustum.
-fn culls_hidden(name: &str) -> bool {
-    !matches!(name, "none" | "frustum")
-}
-
-/// Whether a seed stands for the default tree and the default dials; see [`trees`], [`dialled`].
-fn is_default(seed: u64) -> bool {
-    seed.is_multiple_of(12)
-}
-
-/// By default a policy culls most of what is hidden inside the frustum, although a fifth of the
-/// world changes every frame and the camera cuts every sixth. The baseline's skipped questions
-/// cost it much of that.
-fn assert_culls_most(name: &str, outcome: Outcome) {
-    let least = if name == "statistical" { 0.4 } else { 0.55 };
-    let share = outcome.culled as f64 / outcome.hidden as f64;
-    println!("{name}: {share:.3} of what was hidden was culled");
-    assert!(share > least, "{name} culled only {share:.2} of what was hidden: {outcome:?}");
-}
-
-/// The trees that the suites run on, in turn: the presets and the corners of their dials.
-fn trees() -> Vec<TreeConfig> {
-    let stable = TreeConfig::stable();
-    vec![
-        stable.clone(),
-        TreeConfig::paper(),
-        TreeConfig { straddlers: Straddlers::StayInParent, tight_boxes: TightBoxes::Never, ..stable.clone() },
-        TreeConfig { straddlers: Straddlers::Leaf, tight_boxes: TightBoxes::Settled, bulk_leaf: 8, ..stable },
-    ]
-}
-
-/// A policy with some of its dials turned, by a number.
-fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
-    let mut policy = policy::by_name(name).expect("a policy of that name");
-    let dials: &[(&str, &str)] = match (name, variant % 3) {
-        ("dual-query", 1) => &[("order", "visible-first"), ("n_skip", "4")],
-        ("dual-query", 2) => &[("max_waves", "3"), ("n_skip", "8")],
-        ("statistical", 1) => &[("in_flight", "1"), ("n_skip", "0")],
-        _ => &[],
-    };
-    for (key, value) in dials {
-        policy.set(key, value).expect("a dial of that name");
-    }
-    policy
-}
-
-/// Runs a policy over a model with churn.
-fn outcome(name: &str, model: Model, seed: u64) -> Outcome {
-    let trees = trees();
-    let tree = trees[seed as usize % trees.len()].clone();
-    let mut stage = Stage::new(model, seed, SCREEN, true);
-    run(&mut stage, tree, dialled(name, seed), &mut SoftwareQueries::new(), FRAMES)
-}
 
 #[test]
 fn random_worlds() {
@@ -169,53 +112,6 @@ fn frames_equal_those_without_culling() {
             assert_eq!(outcome.wrong_pixels, 0, "{name}, world {seed}");
             assert!(outcome.culled > 0);
         }
-    }
-}
-
-/// A backend that lies a little: a box of which few samples are visible is called hidden. The
-/// suite must find that out, or it proves nothing.
-struct Lying(SoftwareQueries);
-
-impl Shown for Lying {
-    fn shown(&self) -> &SoftwareQueries {
-        &self.0
-    }
-}
-
-impl QueryBackend for Lying {
-    type Pass = SoftwarePass;
-
-    fn name(&self) -> &'static str {
-        "lying"
-    }
-
-    fn can_block(&self) -> bool {
-        true
-    }
-
-    fn begin(&mut self, view: &View) -> Result<(), Error> {
-        self.0.begin(view)
-    }
-
-    fn draw(&mut self, record: impl FnOnce(&mut SoftwarePass)) -> Result<(), Error> {
-        self.0.draw(record)
-    }
-
-    fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
-        self.0.ask(ticket, boxes, want)
-    }
-
-    fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
-        self.0.answers(wait, |ticket, answer| match answer {
-            Answer::Dual { visible, total } if visible < 20 => {
-                deliver(ticket, Answer::Dual { visible: 0, total });
-            }
-            other => deliver(ticket, other),
-        })
-    }
-
-    fn end(&mut self) -> Result<(), Error> {
-        self.0.end()
     }
 }
 

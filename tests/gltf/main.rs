@@ -3,7 +3,9 @@
 #![cfg(feature = "gltf")]
 
 mod malformed;
+#[path = "../support/scenes.rs"]
 mod scenes;
+#[path = "../support/writer.rs"]
 mod writer;
 
 use std::path::PathBuf;
@@ -81,6 +83,18 @@ fn nested_transforms_multiply_out() {
     assert_eq!([0, 1, 2, 3].map(mirrored), [false, false, true, false]);
     assert_eq!(imported.model.objects[4].world_from_object.matrix3.determinant(), 0.0);
     assert!(imported.report.skipped.is_empty());
+}
+
+#[test]
+fn a_grove_has_transforms_of_every_kind() {
+    let imported = read(&scenes::grove(24));
+    check_bounds(&imported);
+    let objects = &imported.model.objects;
+    assert_eq!((objects.len(), imported.report.meshes), (24 * scenes::LINKS.len() + 8, 1));
+    let determinants: Vec<f32> = objects.iter().map(|o| o.world_from_object.matrix3.determinant()).collect();
+    let share =
+        |is: fn(&f32) -> bool| determinants.iter().filter(|d| is(d)).count() as f32 / objects.len() as f32;
+    assert!(share(|&d| d < 0.0) > 0.3 && share(|&d| d > 0.0) > 0.3 && share(|&d| d == 0.0) > 0.1);
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! What the suites share: worlds that change every frame, cameras that jump, and the count of
 //! what was lost.
 
+pub mod lying;
 pub mod stage;
+pub mod suite;
 
 use hecs::{Entity, World};
 use tercet::draw::{Detail, Drawable};

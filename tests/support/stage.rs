@@ -96,7 +96,11 @@ impl Stage {
                     let placed = self.model.objects[self.rng.random_range(0..count)];
                     let mesh = self.model.meshes[placed.mesh].clone();
                     let (world_from_object, color) = (placed.world_from_object, placed.color);
-                    self.world.spawn((Bounds(placed.bounds), Drawable { mesh, world_from_object, color }));
+                    let drawable = Drawable { mesh, world_from_object, color };
+                    let entity = self.world.spawn((Bounds(placed.bounds), drawable));
+                    if placed.not_occluder {
+                        self.world.insert_one(entity, NotOccluder).expect("it was just spawned");
+                    }
                 }
             }
         }

@@ -44,6 +44,37 @@ pub(crate) fn nested() -> Writer {
     w
 }
 
+/// What each link of a chain of the [`grove`] does to those beyond it: mirrored, turned and
+/// stretched, mirrored again, sheared as no TRS can say; the last is flat.
+pub(crate) const LINKS: [[f32; 16]; 5] = [
+    [-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.3, 1.5, 0.0, 1.0],
+    [0.0, 0.0, -1.5, 0.0, 0.0, 0.8, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0, 0.0, 2.0, 0.5, 1.0],
+    [0.8, 0.6, 0.0, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 2.0, 0.0, 1.0],
+    [1.0, 0.0, 0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.25, 1.2, 0.0, 0.0, 1.8, -0.4, 1.0],
+    [1.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.9, 0.0, -0.5, 1.5, 0.0, 1.0],
+];
+
+/// Crooked trees in a square: each is a chain of nodes, one below the other, of every kind of
+/// transform, with a cube at each. By every third stands a board large enough to hide others.
+pub(crate) fn grove(trees: usize) -> Writer {
+    let mut w = Writer::new();
+    let cube = w.simple_mesh("Cube", &cube_corners(), &CUBE);
+    let side = (trees as f32).sqrt().ceil() as usize;
+    for tree in 0..trees {
+        let at = [3.0 * (tree % side) as f32, 0.0, 3.0 * (tree / side) as f32];
+        let (sin, cos) = (0.4 * tree as f32).sin_cos();
+        let mut link = w.root(json!({ "translation": at, "rotation": [0.0, sin, 0.0, cos] }));
+        if tree % 3 == 0 {
+            let board = json!({ "mesh": cube, "translation": [0.0, 4.0, 2.0], "scale": [4.0, 5.0, 0.05] });
+            w.child(link, board);
+        }
+        for matrix in LINKS {
+            link = w.child(link, json!({ "mesh": cube, "matrix": matrix }));
+        }
+    }
+    w
+}
+
 /// Racks of parts: a few meshes, thousands of nodes, three levels deep.
 pub(crate) fn parts(racks: usize, shelves: usize, parts: usize) -> Writer {
     let mut w = Writer::new();

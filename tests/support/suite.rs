@@ -1,0 +1,70 @@
+//! How a suite runs every policy: on trees and with dials that change from seed to seed, and how
+//! much of what is hidden it must cull.
+
+use tercet::geom::Viewport;
+use tercet::policy::{self, Policy};
+use tercet::query::software::SoftwareQueries;
+use tercet::tree::{Straddlers, TightBoxes, TreeConfig};
+use tercet::worlds::Model;
+
+use super::stage::Stage;
+use super::{Outcome, run};
+
+/// Frames a run.
+pub const FRAMES: u32 = 24;
+/// Small: a frame is mostly culling.
+pub const SCREEN: Viewport = Viewport::new(160, 90);
+
+/// Policies that cull what is hidden, not only what is outside the frustum.
+pub fn culls_hidden(name: &str) -> bool {
+    !matches!(name, "none" | "frustum")
+}
+
+/// Whether a seed stands for the default tree and the default dials; see [`trees`], [`dialled`].
+pub fn is_default(seed: u64) -> bool {
+    seed.is_multiple_of(12)
+}
+
+/// By default a policy culls most of what is hidden inside the frustum, although a fifth of the
+/// world changes every frame and the camera cuts every sixth. The baseline's skipped questions
+/// cost it much of that.
+pub fn assert_culls_most(name: &str, outcome: Outcome) {
+    let least = if name == "statistical" { 0.4 } else { 0.55 };
+    let share = outcome.culled as f64 / outcome.hidden as f64;
+    println!("{name}: {share:.3} of what was hidden was culled");
+    assert!(share > least, "{name} culled only {share:.2} of what was hidden: {outcome:?}");
+}
+
+/// The trees that the suites run on, in turn: the presets and the corners of their dials.
+pub fn trees() -> Vec<TreeConfig> {
+    let stable = TreeConfig::stable();
+    vec![
+        stable.clone(),
+        TreeConfig::paper(),
+        TreeConfig { straddlers: Straddlers::StayInParent, tight_boxes: TightBoxes::Never, ..stable.clone() },
+        TreeConfig { straddlers: Straddlers::Leaf, tight_boxes: TightBoxes::Settled, bulk_leaf: 8, ..stable },
+    ]
+}
+
+/// A policy with some of its dials turned, by a number.
+pub fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
+    let mut policy = policy::by_name(name).expect("a policy of that name");
+    let dials: &[(&str, &str)] = match (name, variant % 3) {
+        ("dual-query", 1) => &[("order", "visible-first"), ("n_skip", "4")],
+        ("dual-query", 2) => &[("max_waves", "3"), ("n_skip", "8")],
+        ("statistical", 1) => &[("in_flight", "1"), ("n_skip", "0")],
+        _ => &[],
+    };
+    for (key, value) in dials {
+        policy.set(key, value).expect("a dial of that name");
+    }
+    policy
+}
+
+/// Runs a policy over a model with churn.
+pub fn outcome(name: &str, model: Model, seed: u64) -> Outcome {
+    let trees = trees();
+    let tree = trees[seed as usize % trees.len()].clone();
+    let mut stage = Stage::new(model, seed, SCREEN, true);
+    run(&mut stage, tree, dialled(name, seed), &mut SoftwareQueries::new(), FRAMES)
+}
