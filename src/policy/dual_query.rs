@@ -13,11 +13,6 @@
 //! frame's finished depth showed are drawn at once, and asked about again when the frame is
 //! complete, which counts them exactly.
 //!
-//! *Who holds back whom.* As published, every waiting question holds back what it overlaps. A
-//! node that was hidden in the last frame is expected to be hidden again, and would add nothing to
-//! the depth buffer: it waits for others, but nothing waits for it. That takes a quarter of the
-//! waves for the same drawing.
-//!
 //! *Skipping.* A leaf that keeps being visible goes unasked for some frames: as many as pay
 //! ([`Skip`]). It draws more, never less.
 //!
@@ -30,6 +25,7 @@
 use std::collections::VecDeque;
 
 use super::front::{Front, FrontQueue};
+use super::order::Waiting;
 use super::skip::{Seen, Share, Turnover};
 use super::{Action, Context, Extent, History, Policy, ScreenTiles, Skip};
 use crate::Error;
@@ -63,10 +59,11 @@ pub struct DualQuery {
     turnover: Turnover,
     /// Nodes to look at, nearest first.
     front: FrontQueue,
-    /// Nodes held back for the next wave.
-    held: Vec<Front>,
+    /// Questions held back in the last wave, nearest first, and those held back in this one.
+    held: Vec<Waiting>,
+    held_again: Vec<Waiting>,
     /// What is asked in this wave; a ticket is an index.
-    wave: Vec<Front>,
+    wave: Vec<Waiting>,
     /// Leaves drawn without an answer, to be asked about in the last wave.
     unasked: Vec<Front>,
     stage: Stage,
@@ -107,6 +104,7 @@ impl Default for DualQuery {
             turnover: Turnover::default(),
             front: FrontQueue::default(),
             held: Vec::new(),
+            held_again: Vec::new(),
             wave: Vec::new(),
             unasked: Vec::new(),
             stage: Stage::Drawing,
@@ -134,6 +132,7 @@ impl Policy for DualQuery {
         self.turnover.begin();
         self.front.clear();
         self.held.clear();
+        self.held_again.clear();
         self.wave.clear();
         self.unasked.clear();
         self.stage = Stage::Drawing;
@@ -157,8 +156,7 @@ impl Policy for DualQuery {
         match self.out.pop_front() {
             Some(Step::Draw(node, extent)) => Action::Draw(node, extent),
             Some(Step::Ask(i)) => {
-                let proxy = self.wave[i].proxy.expect("only questions are in a wave") as usize;
-                let boxes = std::slice::from_ref(&self.proxies[proxy]);
+                let boxes = std::slice::from_ref(&self.proxies[self.wave[i].proxy as usize]);
                 Action::Ask { ticket: Ticket(i as u32), boxes, want: Want::Dual }
             }
             Some(Step::Wait) => Action::Wait(Wait::Block),
@@ -170,7 +168,9 @@ impl Policy for DualQuery {
     }
 
     fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
-        let Some(&Front { node, mask, .. }) = self.wave.get(ticket.0 as usize) else { return };
+        let Some(&Waiting { front: Front { node, mask, .. }, .. }) = self.wave.get(ticket.0 as usize) else {
+            return;
+        };
         if let (Answer::Dual { visible, total }, true) = (answer, cx.tree.is_leaf(node)) {
             self.votes.count(node, visible, total);
         }
@@ -222,19 +222,24 @@ impl DualQuery {
     fn fill_wave(&mut self, cx: &Context<'_>) {
         self.wave.clear();
         self.tiles.clear();
-        self.front.take_back(&mut self.held);
-        while let Some(front) = self.front.pop() {
-            if front.proxy.is_none() && self.is_taken_as_visible(cx, front) {
-                self.take_as_visible(cx, front.node, front.mask);
-                continue;
-            }
-            let Some(front) = self.question(cx, front) else { continue };
-            if self.must_wait(front) {
-                self.held.push(front);
+        let mut held = std::mem::take(&mut self.held);
+        let mut waiting = held.drain(..).peekable();
+        loop {
+            // The nearest of what was held back and what is new.
+            let next = match (waiting.peek(), self.front.peek()) {
+                (None, None) => break,
+                (Some(old), new) if new.is_none_or(|new| old.front >= *new) => waiting.next(),
+                _ => self.front.pop().and_then(|front| self.look_at(cx, front)),
+            };
+            let Some(question) = next else { continue };
+            if question.must_wait(&mut self.tiles) && self.waves < self.max_waves {
+                self.held_again.push(question);
             } else {
-                self.wave.push(front);
+                self.wave.push(question);
             }
         }
+        drop(waiting);
+        self.held = std::mem::replace(&mut self.held_again, held);
         self.waves += 1;
         self.ask_wave();
     }
@@ -256,22 +261,12 @@ impl DualQuery {
                 Question::Outside => self.history.entry(front.node).visible = false,
                 Question::Visible => self.votes.near(front.node),
                 Question::Ask(proxy) => {
-                    let front = self.with_proxy(front, proxy);
-                    self.wave.push(front);
+                    let question = self.with_proxy(front, proxy);
+                    self.wave.push(question);
                 }
             }
         }
         self.ask_wave();
-    }
-
-    /// Whether a question meets a nearer one that waits, and its tiles are covered from now on.
-    /// Nobody waits for a node that was hidden in the last frame.
-    fn must_wait(&mut self, front: Front) -> bool {
-        let rect = self.proxies[front.proxy.expect("it has its question") as usize].rect;
-        let state = self.history.get(front.node);
-        let expected_hidden = state.frame != 0 && !state.visible;
-        let meets = if expected_hidden { self.tiles.meets(rect) } else { self.tiles.cover(rect) };
-        meets && self.waves < self.max_waves
     }
 
     /// An inner node that was visible, or is new, is opened unasked; a leaf that was visible is
@@ -289,10 +284,11 @@ impl DualQuery {
         state.visible && (first || skips)
     }
 
-    /// The node with its question, or None if it needs none.
-    fn question(&mut self, cx: &Context<'_>, front: Front) -> Option<Front> {
-        if front.proxy.is_some() {
-            return Some(front);
+    /// Opens or draws a node, or returns its question.
+    fn look_at(&mut self, cx: &Context<'_>, front: Front) -> Option<Waiting> {
+        if self.is_taken_as_visible(cx, front) {
+            self.take_as_visible(cx, front.node, front.mask);
+            return None;
         }
         match Question::new(&cx.tree.query_box(front.node), cx.view) {
             Question::Outside => None,
@@ -307,10 +303,12 @@ impl DualQuery {
         }
     }
 
-    fn with_proxy(&mut self, mut front: Front, proxy: Proxy) -> Front {
-        front.proxy = Some(self.proxies.len() as u32);
+    fn with_proxy(&mut self, front: Front, proxy: Proxy) -> Waiting {
+        let state = self.history.get(front.node);
+        let expected_hidden = state.frame != 0 && !state.visible;
+        let (number, tiles) = (self.proxies.len() as u32, self.tiles.of(proxy.rect));
         self.proxies.push(proxy);
-        front
+        Waiting { front, proxy: number, tiles, expected_hidden }
     }
 
     /// An answer, or the near plane, says that a node is visible.

@@ -14,8 +14,6 @@ pub(super) struct Front {
     pub(super) node: NodeId,
     /// The planes that its parent crosses.
     pub(super) mask: PlaneMask,
-    /// An index of its question, once there is one.
-    pub(super) proxy: Option<u32>,
 }
 
 /// A priority queue of nodes: the nearest comes first, ties by index, for determinism.
@@ -34,13 +32,13 @@ impl FrontQueue {
         }
         if let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), mask) {
             let distance = cx.tree.distance(node, cx.view.eye());
-            self.0.push(Front { distance, node, mask, proxy: None });
+            self.0.push(Front { distance, node, mask });
         }
     }
 
-    /// Puts back the nodes that were held.
-    pub(super) fn take_back(&mut self, held: &mut Vec<Front>) {
-        self.0.extend(held.drain(..));
+    /// The nearest node.
+    pub(super) fn peek(&self) -> Option<&Front> {
+        self.0.peek()
     }
 
     /// Takes the nearest node. O(log n).

@@ -36,7 +36,7 @@ impl History {
         self.states.clear();
     }
 
-    /// Follows the tree's changes of shape since the last call: split nodes hand their memories
+    /// Follows the tree's changes of shape since the last call: split nodes hand on whether they were visible
     /// to their children, merged ones leave theirs to the parent (visible if any of them was).
     /// O(edits); a view that has fallen too far behind forgets.
     pub fn follow(&mut self, tree: &Tree) {
@@ -144,7 +144,7 @@ mod tests {
         let children = tree.children(root).expect("a split root");
         for child in children {
             let state = history.get(child);
-            assert_eq!((state.frame, state.visible, state.streak), (7, true, 3));
+            assert_eq!((state.frame, state.visible, state.streak), (7, true, 0), "nobody asked about the child");
         }
         // One child goes on being visible, the others are found hidden; then all merge.
         for child in children {

@@ -5,10 +5,39 @@
 //! buffer. Rectangles are compared on a grid of 64 × 64 screen tiles, a bit a tile: a question
 //! costs its rows of tiles, not the number of questions in flight. Two rectangles that only share
 //! a tile count as meeting, which holds back a little more than needed.
+//!
+//! A node that was hidden in the last frame is expected to be hidden again, and would add nothing
+//! to the depth buffer: it waits for others, but nothing waits for it (ours).
 
-use std::ops::RangeInclusive;
-
+use super::front::Front;
 use crate::geom::{PixelRect, Viewport};
+
+/// A node with its question, until the question may be asked. Small, since those that are held
+/// back are looked at again in each wave.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waiting {
+    pub(super) front: Front,
+    /// The number of its proxy.
+    pub(super) proxy: u32,
+    pub(super) tiles: TileRect,
+    /// Whether others need not wait for it.
+    pub(super) expected_hidden: bool,
+}
+
+impl Waiting {
+    /// Whether it must wait for a nearer one. Otherwise farther ones may have to wait for it, and
+    /// its tiles are covered from now on; and so they are if it waits.
+    pub(super) fn must_wait(&self, tiles: &mut ScreenTiles) -> bool {
+        if self.expected_hidden { tiles.meets(self.tiles) } else { tiles.cover(self.tiles) }
+    }
+}
+
+/// The first and last tiles that a rectangle meets, across and down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TileRect {
+    x: [u8; 2],
+    y: [u8; 2],
+}
 
 /// The tiles of the screen that waiting questions cover.
 #[derive(Clone, Debug)]
@@ -32,35 +61,49 @@ impl ScreenTiles {
         self.rows.fill(0);
     }
 
-    /// Whether one of a rectangle's tiles is covered.
-    pub fn meets(&self, rect: PixelRect) -> bool {
-        let (rows, mask) = self.tiles(rect);
-        self.rows[rows].iter().any(|row| row & mask != 0)
+    /// The tiles that a rectangle meets.
+    pub fn of(&self, rect: PixelRect) -> TileRect {
+        let across = |x| tile(x, self.width);
+        let down = |y| tile(y, self.height);
+        TileRect {
+            x: [across(rect.x0), across(rect.x1.max(rect.x0 + 1) - 1)],
+            y: [down(rect.y0), down(rect.y1.max(rect.y0 + 1) - 1)],
+        }
     }
 
-    /// Covers the tiles of a rectangle; true if one of them was covered before.
-    pub fn cover(&mut self, rect: PixelRect) -> bool {
-        let (rows, mask) = self.tiles(rect);
-        let mut met = false;
-        for row in &mut self.rows[rows] {
-            met |= *row & mask != 0;
+    /// Whether one of these tiles is covered.
+    pub fn meets(&self, tiles: TileRect) -> bool {
+        let mask = tiles.mask();
+        self.rows[tiles.rows()].iter().any(|row| row & mask != 0)
+    }
+
+    /// Covers tiles; true if one of them was covered before.
+    pub fn cover(&mut self, tiles: TileRect) -> bool {
+        let mask = tiles.mask();
+        let mut met = 0;
+        for row in &mut self.rows[tiles.rows()] {
+            met |= *row & mask;
             *row |= mask;
         }
-        met
+        met != 0
+    }
+}
+
+impl TileRect {
+    fn rows(self) -> std::ops::RangeInclusive<usize> {
+        self.y[0] as usize..=self.y[1] as usize
     }
 
-    /// The rows of tiles that a rectangle meets, and its bits in each.
-    fn tiles(&self, rect: PixelRect) -> (RangeInclusive<usize>, u64) {
-        let (x0, x1) = (tile(rect.x0, self.width), tile(rect.x1.max(rect.x0 + 1) - 1, self.width));
-        let (y0, y1) = (tile(rect.y0, self.height), tile(rect.y1.max(rect.y0 + 1) - 1, self.height));
-        (y0..=y1, (u64::MAX >> (63 - (x1 - x0))) << x0)
+    /// Its bits in each of its rows.
+    fn mask(self) -> u64 {
+        (u64::MAX >> (63 - (self.x[1] - self.x[0]))) << self.x[0]
     }
 }
 
 /// The tile of a pixel column or row.
-fn tile(pixel: u32, size: u32) -> usize {
+fn tile(pixel: u32, size: u32) -> u8 {
     let tile = u64::from(pixel) * ScreenTiles::SIDE as u64 / u64::from(size.max(1));
-    (tile as usize).min(ScreenTiles::SIDE - 1)
+    tile.min(ScreenTiles::SIDE as u64 - 1) as u8
 }
 
 #[cfg(test)]
@@ -86,9 +129,9 @@ mod tests {
         #[test]
         fn meeting_is_conservative_and_tight(a in rect(), b in rect()) {
             let mut tiles = ScreenTiles::new(Viewport::new(1000, 700));
-            prop_assert!(!tiles.cover(a));
-            let meets = tiles.meets(b);
-            prop_assert_eq!(meets, tiles.clone().cover(b));
+            prop_assert!(!tiles.cover(tiles.of(a)));
+            let meets = tiles.meets(tiles.of(b));
+            prop_assert_eq!(meets, tiles.clone().cover(tiles.of(b)));
             if share_a_pixel(a, b) {
                 prop_assert!(meets);
             }
@@ -109,11 +152,11 @@ mod tests {
         for (width, height) in [(1, 1), (1, 16_384), (63, 65), (16_384, 16_384)] {
             let mut tiles = ScreenTiles::new(Viewport::new(width, height));
             let all = PixelRect { x0: 0, y0: 0, x1: width, y1: height };
-            assert!(!tiles.cover(all));
+            assert!(!tiles.cover(tiles.of(all)));
             let corner = PixelRect { x0: width - 1, y0: height - 1, x1: width, y1: height };
-            assert!(tiles.meets(corner));
+            assert!(tiles.meets(tiles.of(corner)));
             tiles.clear();
-            assert!(!tiles.meets(all));
+            assert!(!tiles.meets(tiles.of(all)));
         }
     }
 }
