@@ -15,10 +15,6 @@ pub struct Costs {
 /// How much a new frame counts.
 const WEIGHT: f32 = 0.125;
 
-/// A hidden object costs less to draw than the mean of those drawn, which are seen: its samples
-/// fail the depth test. On the demos it is a quarter to two thirds.
-const HIDDEN: f32 = 1.0;
-
 impl Default for Costs {
     fn default() -> Self {
         Self::of(0.25)
@@ -26,13 +22,13 @@ impl Default for Costs {
 }
 
 impl Costs {
-    /// A question that costs as much as drawing `objects` hidden objects, within 1/256 to 256.
+    /// A question that costs as much as drawing `objects` objects, within 1/256 to 256.
     pub fn of(objects: f32) -> Self {
         let objects = if objects.is_nan() { 1.0 } else { objects };
         Self { log: objects.clamp(1.0 / 256.0, 256.0).ln() }
     }
 
-    /// What a question costs, policy and waiting included, in hidden objects that could be drawn
+    /// What a question costs, policy and waiting included, in objects that could be drawn
     /// instead: greater than 0.
     pub fn question(&self) -> f32 {
         self.log.exp()
@@ -42,7 +38,7 @@ impl Costs {
     pub fn learn(&mut self, stats: &FrameStats) {
         let each = |time: Duration, n: u32| time.as_secs_f32() / n as f32;
         let question = each(stats.policy + stats.query + stats.wait, stats.queries);
-        let object = each(stats.draw, stats.drawn) * HIDDEN;
+        let object = each(stats.draw, stats.drawn);
         let ratio = question / object;
         if ratio.is_finite() && ratio > 0.0 {
             // Of logarithms: twice as dear and half as dear weigh alike.
@@ -71,7 +67,7 @@ mod tests {
         for _ in 0..100 {
             costs.learn(&frame(100, 10, 800, 20));
         }
-        let expected = 10.0 / (40.0 * HIDDEN);
+        let expected = 10.0 / 40.0;
         assert!((costs.question() / expected - 1.0).abs() < 1e-3, "{costs:?}");
     }
 

@@ -200,7 +200,11 @@ impl Policy for DualQuery {
     fn dials(&self) -> Vec<Dial> {
         vec![
             Dial::choice("order", self.order, ORDERS, "what leaves visible in the last frame wait for"),
-            Dial::new("n_skip", self.n_skip.name(), "frames for which a visible leaf goes unasked, at most, or auto"),
+            Dial::new(
+                "n_skip",
+                self.n_skip.name(),
+                "frames for which a visible leaf goes unasked, at most, or auto",
+            ),
             Dial::new("max_waves", self.max_waves, "waves in which overlapping questions are held back"),
         ]
     }

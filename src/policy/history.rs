@@ -144,7 +144,11 @@ mod tests {
         let children = tree.children(root).expect("a split root");
         for child in children {
             let state = history.get(child);
-            assert_eq!((state.frame, state.visible, state.streak), (7, true, 0), "nobody asked about the child");
+            assert_eq!(
+                (state.frame, state.visible, state.streak),
+                (7, true, 0),
+                "nobody asked about the child"
+            );
         }
         // One child goes on being visible, the others are found hidden; then all merge.
         for child in children {

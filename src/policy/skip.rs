@@ -2,7 +2,7 @@
 //!
 //! The 2005 paper says only that nodes seen visible in several recent frames are queried less
 //! often. Asking about a leaf of `n` objects every `t` frames costs `q / t` a frame, where `q` is
-//! the cost of a question in hidden objects drawn ([`Costs`]). Such a leaf becomes hidden with
+//! the cost of a question in objects drawn ([`Costs`]). Such a leaf becomes hidden with
 //! probability `p` a frame, and stays so for `s` frames on the mean. Of those frames it is drawn
 //! in vain until the next question, a part `m = 1 − s (1 − (1 − 1/s)ᵗ) / t`, if hidden spells are
 //! without memory, and asked about in all others, since only an answer of this very frame can
@@ -61,7 +61,8 @@ impl Skip {
         match self {
             Self::AtMost(n) => leaf.streak.min(n),
             Self::Auto => {
-                let every = turnover.best_interval(leaf.share, leaf.objects, costs.question());
+                let question = costs.question() / IN_VAIN;
+                let every = turnover.best_interval(leaf.share, leaf.objects, question);
                 // A leaf that has only just become visible may as soon be hidden again.
                 let trust = (1 << leaf.streak.min(5)) - 1;
                 let skip = (every - 1).min(trust);
@@ -91,6 +92,14 @@ impl Share {
         }
     }
 }
+
+/// What drawing an object in vain is taken to cost, to the mean of those drawn. By the clock it is
+/// a quarter to two thirds, on the demos: the samples of a hidden object fail the depth test. But
+/// the clock does not see all that an app pays for an object, and near its least the cost of asking
+/// and drawing together hardly changes: with 1, 2, 4 and 8 here, 2500 still teapots took 0.92,
+/// 0.92, 0.90 and 0.90 of the old algorithm's time, and drew 0.95, 0.93, 0.88 and 0.86 of its
+/// objects.
+const IN_VAIN: f32 = 4.0;
 
 /// Frames from question to question that are considered.
 const INTERVALS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 23, 31];
@@ -193,7 +202,7 @@ mod tests {
     #[test]
     fn skips_are_those_of_least_cost() {
         let frames = |objects, question, seen: &Turnover| {
-            Skip::Auto.frames(leaf(objects, u32::MAX), &Costs::of(question), seen)
+            Skip::Auto.frames(leaf(objects, u32::MAX), &Costs::of(IN_VAIN * question), seen)
         };
         // Long spells: about √(2 · 0.5 / (1.5 · 0.02)) = 6 frames; a third may be taken off.
         let rare = turnover(20, 1000, 100);
@@ -210,7 +219,8 @@ mod tests {
         let mut seen = turnover(0, 1000, 100);
         let hardly = Share::of(Answer::Dual { visible: 3, total: 1000 });
         (0..500).for_each(|i| seen.was_visible(hardly, 1, i % 4 == 0));
-        let frames = |share| Skip::Auto.frames(Seen { share, ..leaf(1, 9) }, &Costs::of(0.5), &seen);
+        let frames =
+            |share| Skip::Auto.frames(Seen { share, ..leaf(1, 9) }, &Costs::of(IN_VAIN * 0.5), &seen);
         let wholly = Share::of(Answer::Dual { visible: 900, total: 1000 });
         assert!(frames(hardly) <= 2 && frames(wholly) >= 20, "{} {}", frames(hardly), frames(wholly));
     }

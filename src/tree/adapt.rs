@@ -4,11 +4,18 @@
 //! of how many. Any view's vote can split; a merge takes the agreement of all views that answered
 //! about the three leaves in the same adaptation: the evidence kept is the greatest share that any
 //! of them saw. So views that share a scene are best passed to one call.
+//!
+//! *Leaf size from costs* ([`LeafSize::FromCosts`], ours; the paper leaves open how its constants
+//! might be found). Splitting a leaf of `n` objects costs about one question a frame more, worth
+//! `q` objects, and saves those that are hidden; if they are a quarter, it pays from `n = 4 q` on.
+//! So `O_split` is `4 q`, but never less than the dial, and three leaves that together hold less
+//! than half as many merge, whatever their answers say.
 
 use glam::Vec3;
 
 use super::blocks::Run;
 use super::build::Extent;
+use super::config::LeafSize;
 use super::node::{Evidence, NodeId};
 use super::place::REFIT;
 use super::{Edit, Tree};
@@ -63,10 +70,11 @@ const FRESH_FRAMES: u32 = 16;
 impl Tree {
     /// Splits and merges leaves after the votes of all views. O(votes + changes).
     pub(crate) fn adapt<'a>(&mut self, ballots: impl Iterator<Item = &'a Votes> + Clone) {
-        let all = ballots.flat_map(|b| b.votes.iter().map(move |v| (v, b.forward)));
+        let all = ballots.clone().flat_map(|b| b.votes.iter().map(move |v| (v, b.forward)));
         for (vote, _) in all.clone() {
             self.weigh(vote);
         }
+        self.find_leaf_size(ballots);
         let (mut splits, mut merges) = (self.config.budget, self.config.budget);
         for (vote, forward) in all.clone() {
             if splits > 0 && self.may_split(vote.node) && self.split(vote.node.index, forward) {
@@ -77,7 +85,10 @@ impl Tree {
             if merges == 0 {
                 break;
             }
-            if let Some(parent) = self.mergeable_parent(vote.node) {
+            if let Some(parent) = self.too_small_parent(vote.node) {
+                self.merge(parent);
+                merges -= 1;
+            } else if let Some(parent) = self.mergeable_parent(vote.node) {
                 self.count_flip(self.nodes.changed_at[parent as usize]);
                 self.merge(parent);
                 merges -= 1;
@@ -111,6 +122,22 @@ impl Tree {
         *evidence = Evidence { ratio, at: tick };
     }
 
+    /// Follows the costs of the view that asks at the least cost. As long as they want from two
+    /// thirds to four thirds of the size that is, it stays: costs are never quite the same.
+    fn find_leaf_size<'a>(&mut self, ballots: impl Iterator<Item = &'a Votes>) {
+        let asked = ballots.filter(|ballot| !ballot.votes.is_empty());
+        let question = asked.map(|ballot| ballot.costs.question()).min_by(f32::total_cmp);
+        let wanted = match (self.config.leaf_size, question) {
+            (LeafSize::FromCosts, Some(question)) => self.config.o_split.max((4.0 * question) as u32),
+            (LeafSize::FromCosts, None) => return,
+            (LeafSize::Fixed, _) => self.config.o_split,
+        };
+        let (to, from) = (u64::from(wanted), u64::from(self.o_split));
+        if 3 * to > 4 * from || 3 * to < 2 * from {
+            self.o_split = wanted;
+        }
+    }
+
     /// `visible / total ≥ R_split` and `objects ≥ O_split`, and no merge just before.
     fn may_split(&self, node: NodeId) -> bool {
         if !self.nodes.is_current(node) || !self.nodes.is_leaf(node.index) {
@@ -121,8 +148,19 @@ impl Tree {
         let len = self.nodes.run[n].len;
         at == self.tick
             && ratio >= self.config.r_split
-            && len >= self.config.o_split.max(self.nodes.retry_at[n])
+            && len >= self.o_split.max(self.nodes.retry_at[n])
             && self.has_cooled(node.index)
+    }
+
+    /// The parent of a voting leaf, if its three children are not worth their questions. This needs
+    /// no time to cool: what has merged is far too small to split again.
+    fn too_small_parent(&self, node: NodeId) -> Option<u32> {
+        if self.config.leaf_size == LeafSize::Fixed || !self.nodes.is_current(node) {
+            return None;
+        }
+        let parent = self.parent(node)?.index;
+        let too_small = self.nodes.below[parent as usize] < self.o_split / 2;
+        (too_small && self.has_leaf_children(parent)).then_some(parent)
     }
 
     /// The parent of a voting leaf, if its three children are to merge: for each
@@ -145,7 +183,7 @@ impl Tree {
     fn fits_in_leaf(&self, parent: u32) -> bool {
         let small = |child| self.nodes.below[child as usize] <= self.config.o_merge;
         let stable = !self.config.merge_below_split
-            || self.nodes.below[parent as usize] < self.config.o_split.max(self.config.bulk_leaf);
+            || self.nodes.below[parent as usize] < self.o_split.max(self.config.bulk_leaf);
         self.has_leaf_children(parent) && stable && self.nodes.children(parent).all(small)
     }
 

@@ -47,6 +47,15 @@ pub enum SplitPlane {
     SurfaceArea,
 }
 
+/// How many objects make a leaf worth splitting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeafSize {
+    /// `o_split`, as published.
+    Fixed,
+    /// `o_split`, or more where questions are dear: see [`Tree::adapt`](super::Tree).
+    FromCosts,
+}
+
 /// The dials of the ternary tree. Symbols as in Kovalčík & Tobola 2005.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeConfig {
@@ -58,6 +67,8 @@ pub struct TreeConfig {
     pub r_merge: f32,
     /// … and each holds at most this many objects.
     pub o_merge: u32,
+    /// Whether the costs that the views have seen raise `o_split`.
+    pub leaf_size: LeafSize,
     /// Preferred axis of a split.
     pub axis: SplitAxis,
     /// Position of a split.
@@ -91,6 +102,7 @@ impl TreeConfig {
             o_split: 12,
             r_merge: 0.75,
             o_merge: 5,
+            leaf_size: LeafSize::Fixed,
             axis: SplitAxis::ViewAligned,
             plane: SplitPlane::Middle,
             straddlers: Straddlers::Leaf,
@@ -104,8 +116,8 @@ impl TreeConfig {
         }
     }
 
-    /// The default: leaves of one or two objects, as far as they can be told apart, since asking
-    /// about an object costs less than drawing one in vain; planes that cut few objects,
+    /// The default: leaves of one or two objects, as far as they can be told apart, or of more
+    /// where asking costs more than drawing a few objects in vain; planes that cut few objects,
     /// straddlers split along the other axes, boxes always tight; hysteresis and a budget for
     /// what the votes change.
     pub const fn stable() -> Self {
@@ -114,6 +126,7 @@ impl TreeConfig {
             o_split: 2,
             r_merge: 0.0,
             o_merge: 2,
+            leaf_size: LeafSize::FromCosts,
             axis: SplitAxis::Longest,
             plane: SplitPlane::SurfaceArea,
             straddlers: Straddlers::Split,
@@ -140,6 +153,7 @@ impl TreeConfig {
             "o_split" => self.o_split = dial::number(key, value, 2..=u32::MAX)?,
             "r_merge" => self.r_merge = dial::number(key, value, 0.0..=1.0)?,
             "o_merge" => self.o_merge = dial::number(key, value, 0..=u32::MAX)?,
+            "leaf_size" => self.leaf_size = dial::choice(key, value, LEAF_SIZES)?,
             "axis" => self.axis = dial::choice(key, value, AXES)?,
             "plane" => self.plane = dial::choice(key, value, PLANES)?,
             "straddlers" => self.straddlers = dial::choice(key, value, STRADDLERS)?,
@@ -162,6 +176,7 @@ impl TreeConfig {
             Dial::new("o_split", self.o_split, "objects from which a leaf splits, at least 2"),
             Dial::new("r_merge", self.r_merge, "visible share up to which three leaves merge, 0 to 1"),
             Dial::new("o_merge", self.o_merge, "objects a leaf up to which three leaves merge"),
+            Dial::choice("leaf_size", self.leaf_size, LEAF_SIZES, "what the size of leaves follows"),
             Dial::choice("axis", self.axis, AXES, "preferred axis of a split"),
             Dial::choice("plane", self.plane, PLANES, "position of a split"),
             Dial::choice("straddlers", self.straddlers, STRADDLERS, "where the objects go that a plane cuts"),
@@ -180,6 +195,7 @@ impl TreeConfig {
     }
 }
 
+const LEAF_SIZES: &[(&str, LeafSize)] = &[("fixed", LeafSize::Fixed), ("costs", LeafSize::FromCosts)];
 const AXES: &[(&str, SplitAxis)] = &[("longest", SplitAxis::Longest), ("view", SplitAxis::ViewAligned)];
 const PLANES: &[(&str, SplitPlane)] = &[("middle", SplitPlane::Middle), ("sah", SplitPlane::SurfaceArea)];
 const STRADDLERS: &[(&str, Straddlers)] =

@@ -21,7 +21,7 @@ mod validate;
 
 pub use adapt::{Vote, Votes};
 pub use blocks::{Block, LANES};
-pub use config::{SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig};
+pub use config::{LeafSize, SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig};
 pub use log::Edit;
 pub(crate) use log::EditLog;
 pub use node::{NodeId, Role};
@@ -66,6 +66,8 @@ pub struct Tree {
     crowded: Vec<u32>,
     /// Inner nodes that may have become superfluous.
     thinned: Vec<u32>,
+    /// `O_split` as the costs have it.
+    o_split: u32,
     /// Where the search for idle leaves goes on.
     idle_cursor: usize,
     /// Reused by builds, splits and merges.
@@ -79,6 +81,7 @@ impl Tree {
     /// An empty tree.
     pub fn new(config: TreeConfig) -> Self {
         Self {
+            o_split: config.o_split,
             config,
             nodes: Nodes::with_root(),
             blocks: Blocks::default(),

@@ -17,6 +17,9 @@ pub(crate) const TILE_WIDTH: u32 = LANES as u32;
 /// Pixels a tile, down.
 pub(crate) const TILE_HEIGHT: u32 = 8;
 
+/// Touched tiles from which a refresh is shared among threads.
+const SHARED_FROM: u32 = 1024;
+
 /// The hierarchy. The last level is a single tile.
 #[derive(Debug, Default)]
 pub(crate) struct HiZ {
@@ -47,6 +50,11 @@ impl Level {
 
     fn words(&self) -> usize {
         self.width.div_ceil(64)
+    }
+
+    /// The number of dirty tiles.
+    fn touched(&self) -> u32 {
+        self.dirty.iter().map(|word| word.count_ones()).sum()
     }
 
     fn mark(&mut self, x: usize, y: usize) {
@@ -138,6 +146,14 @@ impl HiZ {
         let image = depth.image();
         let base = &mut self.levels[0];
         let (width, words) = (base.width, base.words());
+        let fold = |row: usize, farthest: &mut [f32], nearest: &mut [f32], dirty: &[u64]| {
+            let first = row * TILE_HEIGHT as usize;
+            let rows = (image.height() as usize - first).min(TILE_HEIGHT as usize);
+            let pixels = &depth.all()[first * depth.stride()..][..rows * depth.stride()];
+            let (stride, width) = (depth.stride(), image.width() as usize);
+            simd::fold_tiles(simd, TileRow { pixels, stride, width, dirty, farthest, nearest });
+        };
+        let least_rows = if base.touched() < SHARED_FROM { usize::MAX } else { 1 };
         (
             base.farthest.par_chunks_mut(width),
             base.nearest.par_chunks_mut(width),
@@ -145,20 +161,8 @@ impl HiZ {
         )
             .into_par_iter()
             .enumerate()
-            .for_each(|(row, (farthest, nearest, dirty))| {
-                let first = row * TILE_HEIGHT as usize;
-                let rows = (image.height() as usize - first).min(TILE_HEIGHT as usize);
-                let pixels = &depth.all()[first * depth.stride()..][..rows * depth.stride()];
-                let tiles = TileRow {
-                    pixels,
-                    stride: depth.stride(),
-                    width: image.width() as usize,
-                    dirty,
-                    farthest,
-                    nearest,
-                };
-                simd::fold_tiles(simd, tiles);
-            });
+            .with_min_len(least_rows)
+            .for_each(|(row, (farthest, nearest, dirty))| fold(row, farthest, nearest, dirty));
         for level in 1..self.levels.len() {
             let (below, above) = self.levels.split_at_mut(level);
             fold_level(&mut below[level - 1], &mut above[0]);

@@ -209,7 +209,7 @@ impl SoftwareQueries {
                 Found { visible: u32::from(simd::any(simd, scene, proxy)), total: 0 }
             };
         };
-        self.found[first..].par_iter_mut().zip(&proxies[first..]).with_min_len(16).for_each(answer);
+        self.found[first..].par_iter_mut().zip(&proxies[first..]).with_min_len(32).for_each(answer);
         self.answered = self.asked.len();
     }
 }

@@ -21,6 +21,9 @@ pub(crate) const MOST_BANDS: usize = 64;
 /// A wave ends after this many vertices or triangles a thread: 16 bytes a vertex, half of an
 /// ordinary second-level cache.
 const WAVE: usize = 32_768;
+/// Triangles or vertices from which a wave is shared among threads. Below, waking another thread
+/// takes longer than the work.
+const SHARED_FROM: usize = 8192;
 /// Vertices a task.
 const VERTICES: usize = 4096;
 
@@ -126,7 +129,7 @@ impl Waves {
             self.vertices.resize(vertices, Vertex::default());
         }
         let instances = &self.instances;
-        let parallel = rayon::current_num_threads() > 1;
+        let parallel = rayon::current_num_threads() > 1 && vertices.max(triangles) >= SHARED_FROM;
         let transform = |(task, out): (usize, &mut [Vertex])| {
             transform_task(simd, &screen, calls, instances, task * VERTICES, out);
         };
