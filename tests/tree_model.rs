@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 use proptest::prelude::*;
-use tercet::Voter;
+use tercet::{Costs, Voter};
 use tercet::geom::Aabb;
 use tercet::scene::{ObjectId, Scene, SceneConfig, Traits};
 use tercet::tree::{SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig, Votes};
@@ -168,7 +168,8 @@ impl Tested {
 
     /// Answers about each leaf: all visible, all hidden, or a share, by the bits of the seed.
     fn vote(&mut self, seed: u32) {
-        let mut ballot = Ballot(Votes { forward: Vec3::new(0.3, -0.2, -0.9), ..Votes::default() });
+        let costs = Costs::of((seed % 11) as f32);
+        let mut ballot = Ballot(Votes { forward: Vec3::new(0.3, -0.2, -0.9), costs, ..Votes::default() });
         for (i, node) in self.scene.tree().nodes().enumerate() {
             if node.is_leaf && seed != 0 {
                 let share = seed.rotate_left(3 * i as u32) % 5;
@@ -364,4 +365,41 @@ fn one_dissenting_view_prevents_a_merge() {
     scene.adapt([&mut hidden, &mut also_hidden]);
     assert_eq!(scene.tree().stats().merges, 1, "both views agree");
     assert_eq!(scene.tree().stats().flips, 1, "merged right after the split");
+}
+
+/// Where questions are dear, leaves hold more objects; the cheapest view decides.
+#[test]
+fn leaves_are_as_large_as_the_costs_ask_for() {
+    let mut scene = Scene::new(SceneConfig::default());
+    for i in 0..64 {
+        let center = Vec3::new(i as f32 * 10.0, 0.0, 0.0);
+        scene.insert(Aabb::from_center(center, Vec3::ONE), Traits::default());
+    }
+    scene.update();
+    let ballot = |scene: &Scene, objects: f32| {
+        let leaves = scene.tree().nodes().filter(|n| n.is_leaf).map(|n| n.id);
+        let mut ballot = Ballot(Votes { costs: Costs::of(objects), ..Votes::default() });
+        leaves.for_each(|leaf| ballot.0.count(leaf, 100, 100));
+        ballot
+    };
+    let mut settle = |costs: &[f32]| {
+        for _ in 0..200 {
+            let mut ballots: Vec<_> = costs.iter().map(|&c| ballot(&scene, c)).collect();
+            scene.adapt(&mut ballots);
+            scene.update();
+            scene.tree().validate().expect("a valid tree");
+        }
+        let leaves = scene.tree().nodes().filter(|n| n.is_leaf && n.objects > 0);
+        let leaves: Vec<_> = leaves.map(|n| n.objects).collect();
+        let stats = scene.tree().stats();
+        (64.0 / leaves.len() as f32, leaves.into_iter().max(), stats.splits + stats.merges)
+    };
+    let (mean, most, _) = settle(&[0.1]);
+    assert!(mean < 1.5 && most <= Some(2), "questions cost nearly nothing: {mean} a leaf");
+    let (mean, most, changes) = settle(&[6.0]);
+    assert!(mean >= 6.0 && most < Some(24), "O_split is 24: {mean} a leaf, {most:?} at most");
+    assert_eq!(settle(&[6.0]).2, changes, "and there it stays");
+    assert_eq!(settle(&[6.5]).2, changes, "a little more or less changes nothing");
+    let (mean, ..) = settle(&[6.0, 0.1]);
+    assert!(mean < 1.5, "one view asks at nearly no cost: {mean} a leaf");
 }

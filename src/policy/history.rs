@@ -36,8 +36,9 @@ impl History {
         self.states.clear();
     }
 
-    /// Follows the tree's changes of shape since the last call: split nodes hand on whether they were visible
-    /// to their children, merged ones leave theirs to the parent (visible if any of them was).
+    /// Follows the tree's changes of shape since the last call: split nodes tell their children
+    /// whether they were visible, merged ones leave their memories to the parent (visible if any of
+    /// them was).
     /// O(edits); a view that has fallen too far behind forgets.
     pub fn follow(&mut self, tree: &Tree) {
         let log = tree.log();

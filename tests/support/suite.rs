@@ -51,7 +51,7 @@ pub fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
     let mut policy = policy::by_name(name).expect("a policy of that name");
     let dials: &[(&str, &str)] = match (name, variant % 3) {
         ("dual-query", 1) => &[("order", "visible-first"), ("n_skip", "4")],
-        ("dual-query", 2) => &[("max_waves", "3"), ("n_skip", "8")],
+        ("dual-query", 2) => &[("max_waves", "3"), ("n_skip", "0")],
         ("statistical", 1) => &[("in_flight", "1"), ("n_skip", "0")],
         _ => &[],
     };
