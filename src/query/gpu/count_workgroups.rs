@@ -1,0 +1,55 @@
+//! Counting in a compute shader: a workgroup for each tile of each proxy's rectangle.
+
+use wgpu::{
+    BindGroup, BindGroupLayout, CommandEncoder, ComputePassDescriptor, ComputePipeline,
+    ComputePipelineDescriptor, Device, ShaderModule, ShaderStages,
+};
+
+use super::batch::Batch;
+use super::bind::{self, Bound, Layouts};
+
+/// The pass.
+#[derive(Debug)]
+pub(super) struct CountWorkgroups {
+    pipeline: ComputePipeline,
+    most_groups: u32,
+}
+
+impl CountWorkgroups {
+    /// The stages that read the frame and the depth.
+    pub(super) const STAGES: ShaderStages = ShaderStages::COMPUTE;
+
+    /// Invocations a workgroup, as the shader has them.
+    pub(super) const INVOCATIONS: u32 = 64;
+
+    pub(super) fn new(device: &Device, layouts: &Layouts, module: &ShaderModule) -> Self {
+        let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
+            label: Some("tercet count workgroups"),
+            layout: Some(&layouts.pipeline),
+            module,
+            entry_point: Some("count"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        Self { pipeline, most_groups: device.limits().max_compute_workgroups_per_dimension }
+    }
+
+    /// What the pass binds of a batch.
+    pub(super) fn bindings(layout: &BindGroupLayout, device: &Device, batch: &Batch) -> BindGroup {
+        let buffers = [batch.proxies_binding(), batch.counts_binding(), batch.tiles_binding()];
+        bind::storage(device, layout, &buffers)
+    }
+
+    pub(super) fn record(&self, encoder: &mut CommandEncoder, bound: &Bound<'_>, batch: &Batch) {
+        let tiles = batch.questions.tiles.len() as u32;
+        let rows = tiles.div_ceil(self.most_groups);
+        let columns = tiles.div_ceil(rows);
+        let descriptor =
+            ComputePassDescriptor { label: Some("tercet count workgroups"), ..Default::default() };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, bound.frame, &[]);
+        pass.set_bind_group(1, bound.batch, &[]);
+        pass.dispatch_workgroups(columns, rows, 1);
+    }
+}
