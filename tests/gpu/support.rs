@@ -100,6 +100,14 @@ impl Nearness {
         let first = ((y * self.width + x) * self.samples) as usize;
         &self.values[first..first + self.samples as usize]
     }
+
+    /// The samples that something was drawn on: their pixel and nearness.
+    pub fn drawn(&self, cleared: f32) -> impl Iterator<Item = (u32, u32, f32)> {
+        let pixel = |sample: usize| sample as u32 / self.samples;
+        let place = move |sample| (pixel(sample) % self.width, pixel(sample) / self.width);
+        let drawn = self.values.iter().enumerate().filter(move |&(_, &nearness)| nearness > cleared);
+        drawn.map(move |(sample, &nearness)| (place(sample).0, place(sample).1, nearness))
+    }
 }
 
 /// Reads a depth texture, by a compute shader: OpenGL cannot copy it.
