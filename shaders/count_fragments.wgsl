@@ -23,15 +23,16 @@ fn rectangle(
 fn count(corner: Corner) {
     let pixel = vec2<u32>(corner.position.xy);
     let i = corner.proxy;
-    let d = offset(i, pixel);
-    if !covers(i, d) {
+    var proxy = proxies[i];
+    let d = offset(&proxy, pixel);
+    if !covers(&proxy, d) {
         return;
     }
-    let any = proxies[i].any != 0u;
+    let any = proxy.any != 0u;
     if any && atomicLoad(&counts[i].visible) != 0u {
         return;
     }
-    let seen = in_sight(pixel, entry(i, d));
+    let seen = in_sight(pixel, entry(&proxy, d));
     if seen != 0u {
         atomicAdd(&counts[i].visible, seen);
     }

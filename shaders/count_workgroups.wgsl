@@ -31,10 +31,10 @@ fn count(
     }
     let tile = tiles[index];
     let i = tile.proxy;
-    let rect = proxies[i].rect;
-    let first = rect.xy + vec2<u32>(tile.column, tile.row) * TILE;
-    let end = min(first + TILE, rect.zw);
-    let any = proxies[i].any != 0u;
+    var proxy = proxies[i];
+    let first = proxy.rect.xy + vec2<u32>(tile.column, tile.row) * TILE;
+    let end = min(first + TILE, proxy.rect.zw);
+    let any = proxy.any != 0u;
     var seen = 0u;
     var covered = 0u;
     for (var y = first.y + lane.y; y < end.y; y += LANES) {
@@ -44,10 +44,10 @@ fn count(
         }
         for (var x = first.x + lane.x; x < end.x; x += LANES) {
             let pixel = vec2<u32>(x, y);
-            let d = offset(i, pixel);
-            if covers(i, d) {
+            let d = offset(&proxy, pixel);
+            if covers(&proxy, d) {
                 covered += frame.samples;
-                seen += in_sight(pixel, entry(i, d));
+                seen += in_sight(pixel, entry(&proxy, d));
             }
         }
         if any && seen != 0u {

@@ -39,7 +39,10 @@ fn queries(gpu: &Gpu) -> GpuQueries {
     gpu.exact_queries(GpuConfig::default())
 }
 
-fn answers(queries: &mut GpuQueries, wait: Wait) -> Result<Vec<(u32, String)>, (Error, Vec<(u32, String)>)> {
+/// Tickets and their answers.
+type Answers = Vec<(u32, String)>;
+
+fn answers(queries: &mut GpuQueries, wait: Wait) -> Result<Answers, (Error, Answers)> {
     let mut all = Vec::new();
     let result = queries.answers(wait, |ticket, answer| all.push((ticket.0, format!("{answer:?}"))));
     all.sort_unstable();
