@@ -56,6 +56,13 @@ fn dual(visible: u32, total: u32) -> String {
     format!("{:?}", Answer::Dual { visible, total })
 }
 
+/// Views can be culled in parallel.
+#[test]
+fn backends_can_be_sent_to_threads() {
+    fn assert_send_sync<T: Send + Sync>() {}
+    assert_send_sync::<GpuQueries>();
+}
+
 #[test]
 fn answers_are_about_the_time_of_asking() {
     for gpu in gpus() {

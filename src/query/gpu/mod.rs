@@ -8,6 +8,30 @@
 //! their threshold, which are counted as visible here (`pack.rs` has the bound). A target with
 //! several samples a pixel counts them all.
 //!
+//! ```no_run
+//! use tercet::Culler;
+//! use tercet::geom::View;
+//! use tercet::policy::DualQuery;
+//! use tercet::query::gpu::{FrameTargets, GpuQueries};
+//! use tercet::scene::Scene;
+//!
+//! fn frame(
+//!     (device, queue): (&wgpu::Device, &wgpu::Queue),
+//!     (color, depth): (wgpu::TextureView, wgpu::TextureView),
+//!     (scene, view): (&Scene, &View),
+//! ) -> Result<(), tercet::Error> {
+//!     let mut eye = Culler::new(DualQuery::default()); // kept from frame to frame, as is
+//!     let mut queries = GpuQueries::new(device, queue)?; // this
+//!     let sky = wgpu::LoadOp::Clear(wgpu::Color::BLUE);
+//!     queries.target(&FrameTargets::new(depth).with_color(color, sky));
+//!     eye.frame(scene, view, &mut queries, |pass, objects| {
+//!         // The app's own pipelines: state does not survive from one call to the next.
+//!         objects.iter().for_each(|_object| pass.draw(0..3, 0..1));
+//!     })?;
+//!     Ok(())
+//! }
+//! ```
+//!
 //! | file | |
 //! |---|---|
 //! | `targets` | what the app draws into, and the passes on it |
