@@ -1,22 +1,7 @@
 // Counts with one workgroup for each tile of a proxy's rectangle. A workgroup adds up by itself
 // and touches the proxy's counts once.
 
-// The twins of the constants and the struct in src/query/gpu/pack.rs.
-const TILE: u32 = 64u;
 const LANES: u32 = 8u;
-
-struct Tile {
-    proxy: u32,
-    // Which of the proxy's tiles.
-    column: u32,
-    row: u32,
-    unused: u32,
-}
-
-@group(1) @binding(2) var<storage, read> tiles: array<Tile>;
-
-var<workgroup> visible: atomic<u32>;
-var<workgroup> total: atomic<u32>;
 
 @compute @workgroup_size(8, 8)
 fn count(
@@ -32,8 +17,9 @@ fn count(
     let tile = tiles[index];
     let i = tile.proxy;
     var proxy = proxies[i];
-    let first = proxy.rect.xy + vec2<u32>(tile.column, tile.row) * TILE;
-    let end = min(first + TILE, proxy.rect.zw);
+    let corner = tile_corner(tile);
+    let first = max(corner, proxy.rect.xy);
+    let end = min(corner + TILE, proxy.rect.zw);
     let any = proxy.any != 0u;
     var seen = 0u;
     var covered = 0u;

@@ -12,3 +12,14 @@ fn in_sight(pixel: vec2<u32>, nearness: f32) -> u32 {
     }
     return seen;
 }
+
+// The least and the greatest nearness of a pixel's samples.
+fn nearness_range(pixel: vec2<u32>) -> vec2<f32> {
+    let texel = vec2<i32>(frame.origin + pixel);
+    var range = vec2<f32>(frame.sign * textureLoad(depth, texel, 0).x);
+    for (var k = 1u; k < frame.samples; k++) {
+        let stored = frame.sign * textureLoad(depth, texel, i32(k)).x;
+        range = vec2<f32>(min(range.x, stored), max(range.y, stored));
+    }
+    return range;
+}

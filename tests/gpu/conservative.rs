@@ -143,7 +143,8 @@ fn lying_shaders_are_found_out() {
     let Some(gpu) = gpus().into_iter().next() else { return };
     for counting in Counting::ALL {
         let mut shaders = Shaders::default();
-        for shader in [&mut shaders.count_fragments, &mut shaders.count_workgroups] {
+        for shader in [&mut shaders.count_fragments, &mut shaders.count_workgroups, &mut shaders.count_blocks]
+        {
             let lie = "nearness >= stored && pixel.x % 8u == 0u";
             shader.single = shader.single.replace("nearness >= stored", lie).into();
         }

@@ -246,15 +246,18 @@ fn counts_equal_the_plain_loop() {
 /// A change of one shader, as text: what is replaced and by what.
 type Mutation = (&'static str, &'static str);
 
-/// Wherever the text occurs in one of the ways of counting.
+/// Wherever the text occurs in the passes of one of the ways of counting.
 fn mutated(counting: Counting, (from, to): Mutation) -> Shaders {
     let mut shaders = Shaders::default();
-    let shader = match counting {
-        Counting::Fragments => &mut shaders.count_fragments,
-        Counting::Workgroups => &mut shaders.count_workgroups,
+    let passes = match counting {
+        Counting::Fragments => vec![&mut shaders.count_fragments],
+        Counting::Workgroups => vec![&mut shaders.count_workgroups],
+        Counting::Blocks => vec![&mut shaders.count_blocks, &mut shaders.gather_blocks],
     };
     let change = |source: &Cow<'static, str>| Cow::Owned(source.replace(from, to));
-    *shader = Shader { single: change(&shader.single), multisampled: change(&shader.multisampled) };
+    for shader in passes {
+        *shader = Shader { single: change(&shader.single), multisampled: change(&shader.multisampled) };
+    }
     shaders
 }
 
@@ -283,7 +286,7 @@ fn wrong_shaders_are_found_out() {
         ("if any && atomicLoad(&counts[i].visible) != 0u", "if any"),
     ];
     const WORKGROUPS: &[Mutation] = &[
-        ("first + TILE", "first + TILE - 1u"),
+        ("corner + TILE", "corner + TILE - 1u"),
         ("y += LANES", "y += LANES + 1u"),
         ("x < end.x", "x + 1u < end.x"),
         ("tile.column, tile.row", "tile.row, tile.column"),
@@ -294,15 +297,36 @@ fn wrong_shaders_are_found_out() {
             "atomicStore(&counts[i].visible, atomicLoad(&visible))",
         ),
     ];
+    const BLOCKS: &[Mutation] = &[
+        ("first.x) * (end.y - first.y)", "first.x + 1u) * (end.y - first.y)"),
+        ("offset(proxy, end - 1u)", "offset(proxy, end - 2u)"),
+        ("entry_least >= range.y", "entry_least >= range.x"),
+        ("entry_most < range.x", "entry_most < range.y"),
+        ("if hidden && (inside || (*proxy).any != 0u)", "if hidden"),
+        ("if inside && entry_least", "if entry_least"),
+        ("select(first, last, f.xy", "select(last, first, f.xy"),
+        ("select(last, first, f.xy", "select(first, last, f.xy"),
+        ("+ lane.xy * BLOCK", "+ lane.xx * BLOCK"),
+        ("first + BLOCK, frame.size", "first + BLOCK - 1u, frame.size"),
+        ("min(range.x, pixel.x)", "range.x"),
+        ("max(range.y, pixel.y)", "range.y"),
+        ("min(range.x, stored)", "range.x"),
+        ("max(range.y, stored)", "range.y"),
+        ("blocks[at.y * grid.x + at.x]", "blocks[at.x * grid.y + at.y]"),
+    ];
     // Those about several samples need an adapter that has them.
     let Some(gpu) = gpus().into_iter().find(|gpu| gpu.sample_counts().len() > 1) else { return };
-    for (counting, own) in [(Counting::Fragments, FRAGMENTS), (Counting::Workgroups, WORKGROUPS)] {
+    for (counting, own) in
+        [(Counting::Fragments, FRAGMENTS), (Counting::Workgroups, WORKGROUPS), (Counting::Blocks, BLOCKS)]
+    {
         for &mutation in SHARED.iter().chain(own) {
             let shaders = mutated(counting, mutation);
-            let changed = [false, true].map(|multisampled| {
-                shaders.source(counting, multisampled) != Shaders::default().source(counting, multisampled)
-            });
-            assert!(changed.contains(&true), "{mutation:?} changes nothing");
+            let sources = |shaders: &Shaders| {
+                [false, true].map(|several| {
+                    [shaders.source(counting, several), shaders.gather_blocks_source(several)].concat()
+                })
+            };
+            assert_ne!(sources(&shaders), sources(&Shaders::default()), "{mutation:?} changes nothing");
             let config = GpuConfig { counting: Some(counting), shaders, ..GpuConfig::default() };
             let mut queries = gpu.exact_queries(config);
             let (mut dice, mut tally) = (ChaCha8Rng::seed_from_u64(11), Tally::default());

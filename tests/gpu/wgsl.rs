@@ -9,8 +9,13 @@ use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 use wgpu::naga::{Module, ShaderStage};
 
 fn sources() -> Vec<String> {
-    let all = Counting::ALL.into_iter().flat_map(|counting| [(counting, false), (counting, true)]);
-    all.map(|(counting, several)| Shaders::default().source(counting, several).to_owned()).collect()
+    let shaders = Shaders::default();
+    let mut all = Vec::new();
+    for several in [false, true] {
+        all.extend(Counting::ALL.map(|counting| shaders.source(counting, several).to_owned()));
+        all.push(shaders.gather_blocks_source(several).to_owned());
+    }
+    all
 }
 
 fn parse(source: &str) -> Module {
@@ -44,7 +49,7 @@ fn shaders_are_valid_and_portable() {
             entries += 1;
         }
     }
-    assert_eq!(entries, 6, "two stages that count fragments, one that counts in workgroups, each twice");
+    assert_eq!(entries, 10, "a vertex, a fragment and three compute stages, each twice");
 }
 
 /// The Rust side starts stages by these names and sizes.
@@ -55,7 +60,11 @@ fn entry_points_are_what_the_passes_start() {
         let fragments = of(Counting::Fragments, several);
         let stages: Vec<_> = fragments.iter().map(|e| (e.name.as_str(), e.stage)).collect();
         assert_eq!(stages, [("rectangle", ShaderStage::Vertex), ("count", ShaderStage::Fragment)]);
-        let workgroups = of(Counting::Workgroups, several);
-        assert_eq!((workgroups[0].name.as_str(), workgroups[0].workgroup_size), ("count", [8, 8, 1]));
+        for counting in [Counting::Workgroups, Counting::Blocks] {
+            let count = &of(counting, several)[0];
+            assert_eq!((count.name.as_str(), count.workgroup_size), ("count", [8, 8, 1]));
+        }
+        let gather = &parse(Shaders::default().gather_blocks_source(several)).entry_points[0];
+        assert_eq!((gather.name.as_str(), gather.workgroup_size), ("gather", [8, 8, 1]));
     }
 }

@@ -129,19 +129,17 @@ impl Batch {
         self.state() == State::Free
     }
 
-    /// The proxies that are asked about, and no more.
-    pub(super) fn proxies_binding(&self) -> BufferBinding<'_> {
-        binding::<PackedProxy>(&self.proxies, self.questions.proxies.len())
-    }
-
-    /// Their tiles, and no more.
-    pub(super) fn tiles_binding(&self) -> BufferBinding<'_> {
-        binding::<PackedTile>(&self.tiles, self.questions.tiles.len())
-    }
-
-    /// Their counts, and no more.
-    pub(super) fn counts_binding(&self) -> BufferBinding<'_> {
-        binding::<PackedCount>(&self.counts, self.questions.proxies.len())
+    /// What is asked about, and no more: proxies, their counts and, on demand, their tiles.
+    pub(super) fn bindings(&self, with_tiles: bool) -> Vec<(u32, BufferBinding<'_>)> {
+        let Questions { proxies, tiles, .. } = &self.questions;
+        let mut all = vec![
+            (0, binding::<PackedProxy>(&self.proxies, proxies.len())),
+            (1, binding::<PackedCount>(&self.counts, proxies.len())),
+        ];
+        if with_tiles {
+            all.push((2, binding::<PackedTile>(&self.tiles, tiles.len())));
+        }
+        all
     }
 
     fn count_bytes(&self) -> u64 {

@@ -24,11 +24,11 @@ pub(super) struct Bound<'a> {
 
 impl Layouts {
     /// `frame_stages` read the frame; the last of them, the one that counts, reads the rest.
-    /// `written` tells of each storage buffer of a batch whether it is written to.
+    /// `buffers` are the bindings of the storage buffers of a batch, and whether each is written to.
     pub(super) fn new(
         device: &Device,
         frame_stages: ShaderStages,
-        written: &[bool],
+        buffers: &[(u32, bool)],
         multisampled: bool,
     ) -> Self {
         let counting = frame_stages.difference(ShaderStages::VERTEX);
@@ -45,9 +45,10 @@ impl Layouts {
                 },
             ),
         ];
-        let storage = |&written: &bool| buffer(BufferBindingType::Storage { read_only: !written });
-        let batch: Vec<_> =
-            written.iter().zip(0..).map(|(written, i)| entry(i, counting, storage(written))).collect();
+        let storage = |&(binding, written): &(u32, bool)| {
+            entry(binding, counting, buffer(BufferBindingType::Storage { read_only: !written }))
+        };
+        let batch: Vec<_> = buffers.iter().map(storage).collect();
         let layout = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
         };
@@ -75,13 +76,17 @@ pub(super) fn frame(
     device.create_bind_group(&BindGroupDescriptor { label: Some("tercet frame"), layout, entries: &entries })
 }
 
-/// Binds storage buffers, from binding 0 on.
-pub(super) fn storage(device: &Device, layout: &BindGroupLayout, buffers: &[BufferBinding<'_>]) -> BindGroup {
-    let entry = |(binding, buffer): (u32, &_)| BindGroupEntry {
-        binding,
-        resource: BindingResource::Buffer(BufferBinding::clone(buffer)),
-    };
-    let entries: Vec<_> = (0..).zip(buffers).map(entry).collect();
+/// Binds storage buffers.
+pub(super) fn storage(
+    device: &Device,
+    layout: &BindGroupLayout,
+    buffers: &[(u32, BufferBinding<'_>)],
+) -> BindGroup {
+    let bound = |buffer: &_| BindingResource::Buffer(BufferBinding::clone(buffer));
+    let entries: Vec<_> = buffers
+        .iter()
+        .map(|(binding, buffer)| BindGroupEntry { binding: *binding, resource: bound(buffer) })
+        .collect();
     device.create_bind_group(&BindGroupDescriptor { label: Some("tercet batch"), layout, entries: &entries })
 }
 

@@ -6,15 +6,15 @@
 use std::mem::offset_of;
 
 use wgpu::{
-    BindGroup, BindGroupLayout, Color, ColorTargetState, ColorWrites, CommandEncoder, Device, Extent3d,
-    FragmentState, LoadOp, Operations, PrimitiveState, PrimitiveTopology, RenderPassColorAttachment,
-    RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderStages, StoreOp,
-    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, VertexAttribute,
-    VertexBufferLayout, VertexFormat, VertexState, VertexStepMode,
+    Color, ColorTargetState, ColorWrites, CommandEncoder, Device, Extent3d, FragmentState, LoadOp,
+    Operations, PrimitiveState, PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor,
+    RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderStages, StoreOp, TextureDescriptor,
+    TextureDimension, TextureFormat, TextureUsages, TextureView, VertexAttribute, VertexBufferLayout,
+    VertexFormat, VertexState, VertexStepMode,
 };
 
 use super::batch::Batch;
-use super::bind::{self, Bound, Layouts};
+use super::bind::{Bound, Layouts};
 use super::pack::PackedProxy;
 use crate::geom::Viewport;
 
@@ -32,6 +32,9 @@ pub(super) struct CountFragments {
 impl CountFragments {
     /// The stages that read the frame and the depth.
     pub(super) const STAGES: ShaderStages = ShaderStages::VERTEX_FRAGMENT;
+
+    /// Storage buffers of a batch, and whether they are written to.
+    pub(super) const BUFFERS: &[(u32, bool)] = &[(0, false), (1, true)];
 
     pub(super) fn new(device: &Device, layouts: &Layouts, module: &ShaderModule) -> Self {
         let rect = VertexAttribute {
@@ -67,11 +70,6 @@ impl CountFragments {
             cache: None,
         });
         Self { pipeline, canvas: None }
-    }
-
-    /// What the pass binds of a batch.
-    pub(super) fn bindings(layout: &BindGroupLayout, device: &Device, batch: &Batch) -> BindGroup {
-        bind::storage(device, layout, &[batch.proxies_binding(), batch.counts_binding()])
     }
 
     pub(super) fn record(

@@ -1,12 +1,13 @@
-//! Counting in a compute shader: a workgroup for each tile of each proxy's rectangle.
+//! Counting in a compute shader: a workgroup for each tile of each proxy's rectangle. Sample by
+//! sample or block by block, the pass is the same; the shader and what it binds differ.
 
 use wgpu::{
-    BindGroup, BindGroupLayout, CommandEncoder, ComputePassDescriptor, ComputePipeline,
-    ComputePipelineDescriptor, Device, ShaderModule, ShaderStages,
+    CommandEncoder, ComputePassDescriptor, ComputePipeline, ComputePipelineDescriptor, Device, ShaderModule,
+    ShaderStages,
 };
 
 use super::batch::Batch;
-use super::bind::{self, Bound, Layouts};
+use super::bind::{Bound, Layouts};
 
 /// The pass.
 #[derive(Debug)]
@@ -18,6 +19,9 @@ pub(super) struct CountWorkgroups {
 impl CountWorkgroups {
     /// The stages that read the frame and the depth.
     pub(super) const STAGES: ShaderStages = ShaderStages::COMPUTE;
+
+    /// Storage buffers of a batch, and whether they are written to.
+    pub(super) const BUFFERS: &[(u32, bool)] = &[(0, false), (1, true), (2, false)];
 
     /// Invocations a workgroup, as the shader has them.
     pub(super) const INVOCATIONS: u32 = 64;
@@ -32,12 +36,6 @@ impl CountWorkgroups {
             cache: None,
         });
         Self { pipeline, most_groups: device.limits().max_compute_workgroups_per_dimension }
-    }
-
-    /// What the pass binds of a batch.
-    pub(super) fn bindings(layout: &BindGroupLayout, device: &Device, batch: &Batch) -> BindGroup {
-        let buffers = [batch.proxies_binding(), batch.counts_binding(), batch.tiles_binding()];
-        bind::storage(device, layout, &buffers)
     }
 
     pub(super) fn record(&self, encoder: &mut CommandEncoder, bound: &Bound<'_>, batch: &Batch) {

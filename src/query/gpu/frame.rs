@@ -26,6 +26,8 @@ pub(super) struct Frame {
     encoder: Option<CommandEncoder>,
     /// Whether a pass has cleared the attachments, or loaded them for the first time.
     opened: bool,
+    /// Whether the depth may have changed since questions were last recorded.
+    drawn: bool,
     last_submission: Option<SubmissionIndex>,
 }
 
@@ -52,6 +54,7 @@ impl GpuQueries {
             bindings,
             encoder: None,
             opened: false,
+            drawn: true,
             last_submission: None,
         });
         Ok(())
@@ -79,9 +82,9 @@ impl GpuQueries {
         guard::guarded(&self.device, || {
             let batch = free(&mut self.batches, &self.device);
             batch.load(&self.device, &self.queue, &mut self.open);
-            let viewport = frame.view.viewport();
+            let state = (frame.view.viewport(), std::mem::take(&mut frame.drawn));
             let encoder = frame.encoder.get_or_insert_with(|| encoder(&self.device));
-            counter.record(&self.device, encoder, &frame.bindings, batch, viewport);
+            counter.record(&self.device, encoder, &frame.bindings, batch, state);
         })
     }
 
@@ -149,6 +152,7 @@ impl GpuQueries {
 impl Frame {
     fn pass(&mut self, device: &wgpu::Device, last: bool) -> RenderPass<'static> {
         let first = !std::mem::replace(&mut self.opened, true);
+        self.drawn = true;
         let encoder = self.encoder.get_or_insert_with(|| encoder(device));
         self.targets.pass(encoder, &self.view, Kind { first, last })
     }

@@ -37,7 +37,8 @@
 //! | `targets` | what the app draws into, and the passes on it |
 //! | `questions`, `pack` | what was asked, as the shaders read it |
 //! | `counter`, `bind` | the ways of counting, behind one door |
-//! | `count_fragments`, `count_workgroups` | one pass each |
+//! | `count_fragments`, `count_workgroups`, `gather_blocks` | one pass each |
+//! | `frame` | passes are recorded, submitted once a wave, and waited for |
 //! | `batch` | buffers of a question pass, from upload to read-back |
 //! | `shaders` | sources; the files are in `shaders/` |
 //! | `guard` | what the device reports, as errors instead of panics |
@@ -54,6 +55,7 @@ mod count_fragments;
 mod count_workgroups;
 mod counter;
 mod frame;
+mod gather_blocks;
 mod guard;
 mod pack;
 mod questions;

@@ -1,5 +1,5 @@
 //! Questions as the shaders read them: the twins of the structs in `shaders/shared/question.wgsl`
-//! and `shaders/count_workgroups.wgsl`.
+//! and `shaders/shared/tiles.wgsl`.
 //!
 //! # Rounding differences err toward visible
 //!
@@ -25,8 +25,11 @@ use crate::geom::{DepthDirection, PixelRect, Proxy, View, Viewport};
 /// How much nearer than elsewhere geometry may be stored where the depth range is emulated.
 pub(super) const EMULATED_RANGE: f32 = 8.0 / 16_777_216.0;
 
-/// The side of a tile in pixels.
+/// The side of a tile in pixels: what a workgroup looks at.
 const TILE: u32 = 64;
+/// The side of a block in pixels: what is decided at once, if it can be. Blocks lie on a grid that
+/// starts at the viewport's corner, and tiles on that of blocks.
+pub(super) const BLOCK: u32 = 8;
 
 /// The same for a whole pass.
 #[repr(C)]
@@ -103,7 +106,8 @@ impl PackedProxy {
 
     fn tile_grid(&self) -> [u32; 2] {
         let [x0, y0, x1, y1] = self.rect;
-        [(x1 - x0).div_ceil(TILE), (y1 - y0).div_ceil(TILE)]
+        let tiles = |first: u32, end: u32| (end - first / BLOCK * BLOCK).div_ceil(TILE);
+        [tiles(x0, x1), tiles(y0, y1)]
     }
 }
 
@@ -174,7 +178,11 @@ mod tests {
             assert_same_layout!(&module, "Proxy", PackedProxy, [rect, edges, planes, nearest, any, unused]);
             assert_same_layout!(&module, "Tile", PackedTile, [proxy, column, row, unused]);
             assert_same_layout!(&module, "Count", PackedCount, [visible, total]);
-            assert!(source.contains(&format!("const TILE: u32 = {TILE}u;")));
+            for (name, value) in [("TILE", TILE), ("BLOCK", BLOCK)] {
+                assert!(source.contains(&format!("const {name}: u32 = {value}u;")));
+            }
+            let gather = shaders.gather_blocks_source(multisampled);
+            assert!(gather.contains(&format!("const BLOCK: u32 = {BLOCK}u;")));
         }
     }
 
@@ -218,7 +226,8 @@ mod tests {
     fn tiles_cover_the_rectangle() {
         let packed = PackedProxy::new(&flat(0.5), Viewport::new(200, 100), 0.0, true).expect("usable");
         let tiles: Vec<_> = packed.tiles(7).map(|t| (t.proxy, t.column, t.row)).collect();
-        assert_eq!(tiles, [(7, 0, 0), (7, 1, 0)]);
-        assert_eq!(packed.tile_count(), 2);
+        // Columns 3 to 129 and rows 2 to 65, from the grid of blocks on.
+        assert_eq!(tiles, [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)].map(|(x, y)| (7, x, y)));
+        assert_eq!(packed.tile_count(), 6);
     }
 }

@@ -13,6 +13,12 @@ pub struct Shader {
     pub multisampled: Cow<'static, str>,
 }
 
+impl Shader {
+    fn source(&self, multisampled: bool) -> &str {
+        if multisampled { &self.multisampled } else { &self.single }
+    }
+}
+
 /// The WGSL of every pass. The defaults are the files in `shaders/`; another source is for working
 /// around a driver, and for tests that break one on purpose.
 #[derive(Clone, Debug)]
@@ -21,6 +27,10 @@ pub struct Shaders {
     pub count_fragments: Shader,
     /// [`Counting::Workgroups`].
     pub count_workgroups: Shader,
+    /// [`Counting::Blocks`].
+    pub count_blocks: Shader,
+    /// What [`Counting::Blocks`] gathers first.
+    pub gather_blocks: Shader,
 }
 
 impl Shaders {
@@ -29,24 +39,30 @@ impl Shaders {
         let shader = match counting {
             Counting::Fragments => &self.count_fragments,
             Counting::Workgroups => &self.count_workgroups,
+            Counting::Blocks => &self.count_blocks,
         };
-        if multisampled { &shader.multisampled } else { &shader.single }
+        shader.source(multisampled)
+    }
+
+    /// The source that gathers blocks.
+    pub fn gather_blocks_source(&self, multisampled: bool) -> &str {
+        self.gather_blocks.source(multisampled)
     }
 }
 
-/// A pass behind what all passes share.
+/// A pass, after the parts that it shares with others.
 macro_rules! shader {
-    ($pass:literal) => {
+    ($($part:literal),*) => {
         Shader {
             single: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/shared/depth.wgsl"),
-                include_str!(concat!("../../../shaders/", $pass)),
+                $(include_str!(concat!("../../../shaders/", $part))),*
             )),
             multisampled: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/shared/depth_multisampled.wgsl"),
-                include_str!(concat!("../../../shaders/", $pass)),
+                $(include_str!(concat!("../../../shaders/", $part))),*
             )),
         }
     };
@@ -56,7 +72,9 @@ impl Default for Shaders {
     fn default() -> Self {
         Self {
             count_fragments: shader!("count_fragments.wgsl"),
-            count_workgroups: shader!("count_workgroups.wgsl"),
+            count_workgroups: shader!("shared/tiles.wgsl", "count_workgroups.wgsl"),
+            count_blocks: shader!("shared/tiles.wgsl", "count_blocks.wgsl"),
+            gather_blocks: shader!("gather_blocks.wgsl"),
         }
     }
 }
