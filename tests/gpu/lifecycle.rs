@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 use glam::{Mat4, Vec4};
 use tercet::Error;
 use tercet::geom::{DepthDirection, DepthFormat, PixelRect, Proxy, View, Viewport, projection};
-use tercet::query::gpu::{ColorTarget, Counting, DepthTarget, FrameTargets, GpuConfig, GpuQueries};
+use tercet::query::gpu::{ColorTarget, DepthTarget, FrameTargets, GpuConfig, GpuQueries};
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 
-use crate::support::{ClipSpace, Gpu, clip, depth_texture, gpus, read_buffer, targets, texture};
+use crate::support::{ClipSpace, Gpu, clip, depth_texture, gpus, read_buffer, targets, texture, ways};
 use crate::twin::flat;
 
 const SIDE: u32 = 64;
@@ -66,10 +66,10 @@ fn backends_can_be_sent_to_threads() {
 #[test]
 fn answers_are_about_the_time_of_asking() {
     for gpu in gpus() {
-        for counting in Counting::ALL {
+        for counting in ways() {
             let view = view();
             let depth = depth_texture(&gpu, &view);
-            let mut queries = gpu.exact_queries(GpuConfig { counting: Some(counting), ..Default::default() });
+            let mut queries = gpu.exact_queries(GpuConfig { counting, ..Default::default() });
             let half = ClipSpace::new(&gpu, &view, &half_wall(&view, 0.5));
             let whole = ClipSpace::new(&gpu, &view, &[wall(&view, 0.75)]);
             queries.target(&targets(&depth, false));
@@ -134,11 +134,11 @@ fn polling_delivers_what_has_arrived_and_forgets_what_is_old() {
 #[test]
 fn many_boxes_fit() {
     for gpu in gpus() {
-        for counting in Counting::ALL {
+        for counting in ways() {
             let view = view();
             let depth = depth_texture(&gpu, &view);
             let half = ClipSpace::new(&gpu, &view, &half_wall(&view, 0.5));
-            let mut queries = gpu.exact_queries(GpuConfig { counting: Some(counting), ..Default::default() });
+            let mut queries = gpu.exact_queries(GpuConfig { counting, ..Default::default() });
             queries.target(&targets(&depth, false));
             // More tiles than workgroups in a row.
             for count in [1, 70_000, 3] {

@@ -5,7 +5,7 @@ use std::io::Write;
 use glam::{Vec3, Vec4};
 use tercet::geom::{DepthDirection, DepthFormat, View};
 use tercet::query::QueryBackend;
-use tercet::query::gpu::{DepthTarget, FrameTargets, GpuConfig, GpuQueries};
+use tercet::query::gpu::{Counting, DepthTarget, FrameTargets, GpuConfig, GpuQueries};
 use wgpu::util::DeviceExt;
 
 /// A device of its own.
@@ -54,6 +54,11 @@ pub fn gpus() -> Vec<Gpu> {
         let _ = writeln!(std::io::stderr(), "SKIPPED: there is no adapter for {backends:?}");
     }
     gpus
+}
+
+/// Each way of counting by itself, and what is chosen by default.
+pub fn ways() -> impl Iterator<Item = Option<Counting>> {
+    Counting::ALL.into_iter().map(Some).chain([None])
 }
 
 /// A depth texture that a view can be drawn into.

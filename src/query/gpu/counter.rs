@@ -24,8 +24,7 @@ pub enum Counting {
     /// In a compute shader, a workgroup for each 64 × 64 pixels of a box, which adds up by itself.
     Workgroups,
     /// As [`Counting::Workgroups`], but the least and greatest depth of each 8 × 8 pixels is
-    /// gathered first, so that most of a large box is decided without looking at its samples. It
-    /// pays when a wave asks about more samples than the viewport has.
+    /// gathered first, so that most of a large box is decided without looking at its samples.
     Blocks,
 }
 
@@ -45,16 +44,75 @@ impl Counting {
             Self::Blocks => has(4) && computes,
         }
     }
+}
 
-    /// The way that is best for policies that ask in waves, of those that a device supports.
-    pub fn best(device: &Device) -> Option<Self> {
-        [Self::Workgroups, Self::Fragments].into_iter().find(|counting| counting.is_supported(device))
+/// The ways of counting in use: one for questions about few pixels, and one for many.
+#[derive(Debug)]
+pub(super) struct Counters {
+    few: Counter,
+    many: Option<Counter>,
+}
+
+impl Counters {
+    /// With one way of counting, or with the best that the device supports.
+    pub(super) fn new(
+        device: &Device,
+        counting: Option<Counting>,
+        shaders: &Shaders,
+        multisampled: bool,
+    ) -> Result<Self, Error> {
+        let new = |counting| Counter::new(device, counting, shaders, multisampled);
+        if let Some(counting) = counting {
+            return Ok(Self { few: new(counting)?, many: None });
+        }
+        let supported =
+            [Counting::Workgroups, Counting::Fragments].into_iter().find(|c| c.is_supported(device));
+        let few = supported
+            .ok_or_else(|| failed("it has no storage buffers in shaders: use the software backend"))?;
+        let many = Counting::Blocks.is_supported(device).then_some(Counting::Blocks);
+        Ok(Self { few: new(few)?, many: many.map(new).transpose()? })
+    }
+
+    /// Binds a frame's view and depth, for both.
+    pub(super) fn bind_frame(&self, device: &Device, uniforms: &Buffer, depth: &TextureView) -> BindGroup {
+        bind::frame(device, &self.few.layouts.frame, uniforms, depth)
+    }
+
+    /// To be called when the depth may have changed.
+    pub(super) fn depth_changed(&mut self) {
+        for counter in [Some(&mut self.few), self.many.as_mut()].into_iter().flatten() {
+            if let Pass::Blocks { stale, .. } = &mut counter.pass {
+                *stale = true;
+            }
+        }
+    }
+
+    /// Records the counting of a batch, from zeroed counts to the copy that can be read.
+    pub(super) fn record(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        frame: &BindGroup,
+        batch: &Batch,
+        viewport: Viewport,
+    ) {
+        batch.clear_counts(encoder);
+        if !batch.questions.proxies.is_empty() {
+            // Gathering looks at each pixel of the viewport, at less than half the cost of counting.
+            let pixels = u64::from(viewport.width) * u64::from(viewport.height);
+            let counter = match &mut self.many {
+                Some(many) if 2 * batch.questions.pixels >= pixels => many,
+                _ => &mut self.few,
+            };
+            counter.record(device, encoder, frame, batch, viewport);
+        }
+        batch.copy_counts(encoder);
     }
 }
 
 /// Pipelines of one way of counting, for targets with one sample a pixel or with several.
 #[derive(Debug)]
-pub(super) struct Counter {
+struct Counter {
     layouts: Layouts,
     pass: Pass,
 }
@@ -63,11 +121,16 @@ pub(super) struct Counter {
 enum Pass {
     Fragments(CountFragments),
     Workgroups(CountWorkgroups),
-    Blocks(GatherBlocks, CountWorkgroups),
+    Blocks {
+        gather: GatherBlocks,
+        count: CountWorkgroups,
+        /// Whether the depth may have changed since blocks were gathered.
+        stale: bool,
+    },
 }
 
 impl Counter {
-    pub(super) fn new(
+    fn new(
         device: &Device,
         counting: Counting,
         shaders: &Shaders,
@@ -95,53 +158,42 @@ impl Counter {
                     let layouts = layouts(CountWorkgroups::STAGES, &buffers);
                     let gather = compiled(device, shaders.gather_blocks_source(multisampled));
                     let gather = GatherBlocks::new(device, &gather, multisampled);
-                    let pass = Pass::Blocks(gather, CountWorkgroups::new(device, &layouts, &module));
-                    Self { layouts, pass }
+                    let count = CountWorkgroups::new(device, &layouts, &module);
+                    Self { layouts, pass: Pass::Blocks { gather, count, stale: true } }
                 }
             }
         })
     }
 
-    /// Binds a frame's view and depth.
-    pub(super) fn bind_frame(&self, device: &Device, uniforms: &Buffer, depth: &TextureView) -> BindGroup {
-        bind::frame(device, &self.layouts.frame, uniforms, depth)
-    }
-
-    /// Records the counting of a batch, from zeroed counts to the copy that can be read. `drawn`
-    /// says whether the depth may have changed since the last time in this frame.
-    pub(super) fn record(
+    fn record(
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         frame: &BindGroup,
         batch: &Batch,
-        (viewport, drawn): (Viewport, bool),
+        viewport: Viewport,
     ) {
-        batch.clear_counts(encoder);
-        if !batch.questions.proxies.is_empty() {
-            let bind = |buffers: &[_]| bind::storage(device, &self.layouts.batch, buffers);
-            match &mut self.pass {
-                Pass::Fragments(pass) => {
-                    let bindings = bind(&batch.bindings(false));
-                    pass.record(device, encoder, &Bound { frame, batch: &bindings }, batch, viewport);
+        let bind = |buffers: &[_]| bind::storage(device, &self.layouts.batch, buffers);
+        match &mut self.pass {
+            Pass::Fragments(pass) => {
+                let bindings = bind(&batch.bindings(false));
+                pass.record(device, encoder, &Bound { frame, batch: &bindings }, batch, viewport);
+            }
+            Pass::Workgroups(pass) => {
+                let bindings = bind(&batch.bindings(true));
+                pass.record(encoder, &Bound { frame, batch: &bindings }, batch);
+            }
+            Pass::Blocks { gather, count, stale } => {
+                gather.resize(device, viewport);
+                if std::mem::take(stale) {
+                    gather.record(encoder, frame);
                 }
-                Pass::Workgroups(pass) => {
-                    let bindings = bind(&batch.bindings(true));
-                    pass.record(encoder, &Bound { frame, batch: &bindings }, batch);
-                }
-                Pass::Blocks(gather, pass) => {
-                    gather.resize(device, viewport);
-                    if drawn {
-                        gather.record(encoder, frame);
-                    }
-                    let mut buffers = batch.bindings(true);
-                    buffers.extend(gather.binding().map(|blocks| (gather_blocks::BINDING, blocks)));
-                    let bindings = bind(&buffers);
-                    pass.record(encoder, &Bound { frame, batch: &bindings }, batch);
-                }
+                let mut buffers = batch.bindings(true);
+                buffers.extend(gather.binding().map(|blocks| (gather_blocks::BINDING, blocks)));
+                let bindings = bind(&buffers);
+                count.record(encoder, &Bound { frame, batch: &bindings }, batch);
             }
         }
-        batch.copy_counts(encoder);
     }
 }
 

@@ -6,11 +6,11 @@ use bytemuck::bytes_of;
 use wgpu::{BindGroup, CommandEncoder, RenderPass, SubmissionIndex};
 
 use super::batch::{Batch, State};
-use super::counter::Counter;
+use super::counter::Counters;
 use super::pack::PackedFrame;
 use super::questions::Terms;
 use super::targets::{FrameTargets, Kind};
-use super::{GpuQueries, guard};
+use super::{GpuConfig, GpuQueries, guard};
 use crate::Error;
 use crate::geom::View;
 use crate::query::Wait;
@@ -26,8 +26,6 @@ pub(super) struct Frame {
     encoder: Option<CommandEncoder>,
     /// Whether a pass has cleared the attachments, or loaded them for the first time.
     opened: bool,
-    /// Whether the depth may have changed since questions were last recorded.
-    drawn: bool,
     last_submission: Option<SubmissionIndex>,
 }
 
@@ -38,14 +36,17 @@ impl GpuQueries {
         };
         targets.check(view, self.backend)?;
         let several = view.samples() > 1;
-        let counter = &mut self.counters[usize::from(several)];
-        if counter.is_none() {
-            *counter = Some(Counter::new(&self.device, self.counting, &self.config.shaders, several)?);
-        }
-        let counter = counter.as_ref().expect("it was made just now");
+        let counters = match &mut self.counters[usize::from(several)] {
+            Some(counters) => counters,
+            none => {
+                let GpuConfig { counting, shaders, .. } = &self.config;
+                none.insert(Counters::new(&self.device, *counting, shaders, several)?)
+            }
+        };
+        counters.depth_changed();
         let bindings = guard::guarded(&self.device, || {
             self.queue.write_buffer(&self.uniforms, 0, bytes_of(&PackedFrame::new(view)));
-            counter.bind_frame(&self.device, &self.uniforms, targets.readable_depth())
+            counters.bind_frame(&self.device, &self.uniforms, targets.readable_depth())
         })?;
         self.frame = Some(Frame {
             view: view.clone(),
@@ -54,7 +55,6 @@ impl GpuQueries {
             bindings,
             encoder: None,
             opened: false,
-            drawn: true,
             last_submission: None,
         });
         Ok(())
@@ -64,6 +64,7 @@ impl GpuQueries {
     pub(super) fn open_pass(&mut self) -> Result<RenderPass<'static>, Error> {
         self.stats.draw_passes += 1;
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
+        self.counters.iter_mut().flatten().for_each(Counters::depth_changed);
         Ok(frame.pass(&self.device, false))
     }
 
@@ -76,15 +77,15 @@ impl GpuQueries {
         if !frame.opened {
             drop(frame.pass(&self.device, false));
         }
-        let counter = self.counters[usize::from(frame.view.samples() > 1)].as_mut();
-        let counter = counter.expect("the frame's counter was made when it began");
+        let counters = self.counters[usize::from(frame.view.samples() > 1)].as_mut();
+        let counters = counters.expect("they were made when the frame began");
         self.stats.question_passes += 1;
         guard::guarded(&self.device, || {
             let batch = free(&mut self.batches, &self.device);
             batch.load(&self.device, &self.queue, &mut self.open);
-            let state = (frame.view.viewport(), std::mem::take(&mut frame.drawn));
+            let viewport = frame.view.viewport();
             let encoder = frame.encoder.get_or_insert_with(|| encoder(&self.device));
-            counter.record(&self.device, encoder, &frame.bindings, batch, state);
+            counters.record(&self.device, encoder, &frame.bindings, batch, viewport);
         })
     }
 
@@ -152,7 +153,6 @@ impl GpuQueries {
 impl Frame {
     fn pass(&mut self, device: &wgpu::Device, last: bool) -> RenderPass<'static> {
         let first = !std::mem::replace(&mut self.opened, true);
-        self.drawn = true;
         let encoder = self.encoder.get_or_insert_with(|| encoder(device));
         self.targets.pass(encoder, &self.view, Kind { first, last })
     }

@@ -74,7 +74,7 @@ use super::{Answer, QueryBackend, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
 use batch::Batch;
-use counter::Counter;
+use counter::Counters;
 use frame::Frame;
 use pack::{EMULATED_RANGE, PackedFrame};
 use questions::Questions;
@@ -82,7 +82,8 @@ use questions::Questions;
 /// The dials of [`GpuQueries`].
 #[derive(Clone, Debug)]
 pub struct GpuConfig {
-    /// How samples are counted; None for the fastest way that the device supports.
+    /// How samples are counted; None for the best that the device supports: questions about many
+    /// pixels by [`Counting::Blocks`], about few by [`Counting::Workgroups`].
     pub counting: Option<Counting>,
     /// The longest that [`Wait::Block`] waits.
     pub timeout: Duration,
@@ -128,11 +129,10 @@ pub struct GpuQueries {
     device: Device,
     queue: Queue,
     config: GpuConfig,
-    counting: Counting,
     backend: Backend,
     slack: f32,
     /// For targets with one sample a pixel and with several.
-    counters: [Option<Counter>; 2],
+    counters: [Option<Counters>; 2],
     uniforms: Buffer,
     targets: Option<FrameTargets>,
     frame: Option<Frame>,
@@ -156,13 +156,10 @@ impl GpuQueries {
     /// # Errors
     /// As [`GpuQueries::new`]; also if the device does not support the way of counting.
     pub fn with_config(device: &Device, queue: &Queue, config: GpuConfig) -> Result<Self, Error> {
-        let Some(counting) = config.counting.or_else(|| Counting::best(device)) else {
-            return Err(guard::failed("it has no storage buffers in shaders: use the software backend"));
-        };
         let backend = device.adapter_info().backend;
         let api_slack = if backend == Backend::Gl { EMULATED_RANGE } else { 0.0 };
         let slack = config.depth_slack.unwrap_or(api_slack);
-        let counter = Counter::new(device, counting, &config.shaders, false)?;
+        let counters = Counters::new(device, config.counting, &config.shaders, false)?;
         let uniforms = guard::guarded(device, || {
             device.create_buffer(&BufferDescriptor {
                 label: Some("tercet frame"),
@@ -175,10 +172,9 @@ impl GpuQueries {
             device: device.clone(),
             queue: queue.clone(),
             config,
-            counting,
             backend,
             slack,
-            counters: [Some(counter), None],
+            counters: [Some(counters), None],
             uniforms,
             targets: None,
             frame: None,
@@ -197,11 +193,6 @@ impl GpuQueries {
     /// Says what the next frames draw into. They are checked when a frame begins.
     pub fn target(&mut self, targets: &FrameTargets) {
         self.targets = Some(targets.clone());
-    }
-
-    /// The way of counting in use.
-    pub fn counting(&self) -> Counting {
-        self.counting
     }
 
     /// Counters since the frame began.

@@ -91,6 +91,12 @@ impl PackedProxy {
         (!packed.nearest.is_nan()).then_some(packed)
     }
 
+    /// How many pixels the rectangle has.
+    pub(super) fn pixels(&self) -> u64 {
+        let [x0, y0, x1, y1] = self.rect;
+        u64::from(x1 - x0) * u64::from(y1 - y0)
+    }
+
     /// How many tiles the rectangle has.
     pub(super) fn tile_count(&self) -> u64 {
         let [columns, rows] = self.tile_grid();
@@ -228,6 +234,6 @@ mod tests {
         let tiles: Vec<_> = packed.tiles(7).map(|t| (t.proxy, t.column, t.row)).collect();
         // Columns 3 to 129 and rows 2 to 65, from the grid of blocks on.
         assert_eq!(tiles, [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)].map(|(x, y)| (7, x, y)));
-        assert_eq!(packed.tile_count(), 6);
+        assert_eq!((packed.tile_count(), packed.pixels()), (6, 127 * 64));
     }
 }

@@ -14,6 +14,8 @@ pub(super) struct Questions {
     pub(super) asked: Vec<Asked>,
     pub(super) proxies: Vec<PackedProxy>,
     pub(super) tiles: Vec<PackedTile>,
+    /// How many pixels the rectangles have together.
+    pub(super) pixels: u64,
 }
 
 #[derive(Clone, Debug)]
@@ -65,6 +67,7 @@ impl Questions {
         }
         for i in first..self.proxies.len() {
             self.tiles.extend(self.proxies[i].tiles(i as u32));
+            self.pixels += self.proxies[i].pixels();
         }
         self.asked.push(Asked { ticket, want, proxies: first..self.proxies.len(), usable });
     }
@@ -90,6 +93,7 @@ impl Questions {
         self.asked.clear();
         self.proxies.clear();
         self.tiles.clear();
+        self.pixels = 0;
     }
 }
 
