@@ -1,29 +1,29 @@
-//! Frames, waves, waiting, and everything that can go wrong.
+//! Frames, waves and waiting.
 
 use std::time::{Duration, Instant};
 
 use glam::{Mat4, Vec4};
 use tercet::Error;
-use tercet::geom::{DepthDirection, DepthFormat, PixelRect, Proxy, View, Viewport, projection};
+use tercet::geom::{DepthDirection, DepthFormat, PixelRect, View, Viewport, projection};
 use tercet::query::gpu::{ColorTarget, DepthTarget, FrameTargets, GpuConfig, GpuQueries};
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 
 use crate::support::{ClipSpace, Gpu, clip, depth_texture, gpus, read_buffer, targets, texture, ways};
 use crate::twin::flat;
 
-const SIDE: u32 = 64;
+pub const SIDE: u32 = 64;
 
-fn view() -> View {
+pub fn view() -> View {
     let clip_from_view = projection::perspective(1.0, 1.0, 0.1);
     View::new(Mat4::IDENTITY, clip_from_view, Viewport::new(SIDE, SIDE)).expect("a view")
 }
 
-fn screen() -> PixelRect {
+pub fn screen() -> PixelRect {
     PixelRect { x0: 0, y0: 0, x1: SIDE, y1: SIDE }
 }
 
 /// Triangles that fill the screen at a nearness.
-fn wall(view: &View, nearness: f32) -> [Vec4; 3] {
+pub fn wall(view: &View, nearness: f32) -> [Vec4; 3] {
     let far = 4.0 * SIDE as f32;
     [[-far, -far], [far, -far], [0.0, far]].map(|pixel| clip(view, pixel, nearness))
 }
@@ -35,14 +35,14 @@ fn half_wall(view: &View, nearness: f32) -> [[Vec4; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-fn queries(gpu: &Gpu) -> GpuQueries {
+pub fn queries(gpu: &Gpu) -> GpuQueries {
     gpu.exact_queries(GpuConfig::default())
 }
 
 /// Tickets and their answers.
-type Answers = Vec<(u32, String)>;
+pub type Answers = Vec<(u32, String)>;
 
-fn answers(queries: &mut GpuQueries, wait: Wait) -> Result<Answers, (Error, Answers)> {
+pub fn answers(queries: &mut GpuQueries, wait: Wait) -> Result<Answers, (Error, Answers)> {
     let mut all = Vec::new();
     let result = queries.answers(wait, |ticket, answer| all.push((ticket.0, format!("{answer:?}"))));
     all.sort_unstable();
@@ -264,150 +264,4 @@ fn first_pixel(gpu: &Gpu, texture: &wgpu::Texture) -> [u8; 3] {
     gpu.queue.submit([encoder.finish()]);
     let bytes = read_buffer(gpu, &buffer);
     [bytes[0], bytes[1], bytes[2]]
-}
-
-/// Why a frame cannot begin with some targets.
-fn refusal(queries: &mut GpuQueries, targets: &FrameTargets, view: &View) -> String {
-    queries.target(targets);
-    match queries.begin(view) {
-        Err(Error::Target { why }) => why,
-        other => panic!("{other:?}"),
-    }
-}
-
-#[test]
-fn unusable_targets_are_refused() {
-    for gpu in gpus() {
-        let view = view();
-        let mut queries = queries(&gpu);
-        assert!(matches!(queries.begin(&view), Err(Error::Target { .. })), "no targets at all");
-        assert!(matches!(queries.draw(|_| ()), Err(Error::Target { .. })), "no frame has begun");
-        let of = |format, side, samples| targets(&texture(&gpu, format, [side, side], samples), false);
-        let (float, fixed) = (wgpu::TextureFormat::Depth32Float, wgpu::TextureFormat::Depth24Plus);
-        for (targets, says) in [
-            (of(wgpu::TextureFormat::Depth16Unorm, SIDE, 1), "too coarse"),
-            (of(wgpu::TextureFormat::Rgba8Unorm, SIDE, 1), "no depth format"),
-            (of(fixed, SIDE, 1), "Depth24Plus"),
-            (of(float, SIDE, 4), "4 samples"),
-            (of(float, SIDE - 1, 1), "does not fit"),
-            (of(wgpu::TextureFormat::Depth24PlusStencil8, SIDE, 1), "Depth24Plus"),
-        ] {
-            let why = refusal(&mut queries, &targets, &view);
-            assert!(why.contains(says), "{why:?} should say {says:?}");
-        }
-        if gpu.backend == wgpu::Backend::Gl {
-            let multisampled =
-                view.clone().with_target(DepthDirection::Reversed, DepthFormat::Depth32Float, 4);
-            let why = refusal(&mut queries, &of(float, SIDE, 4), &multisampled);
-            assert!(why.contains("OpenGL"), "{why:?}");
-        }
-        let fixed_view = view.clone().with_target(DepthDirection::Reversed, DepthFormat::Depth24Plus, 1);
-        let why = refusal(&mut queries, &of(wgpu::TextureFormat::Depth24PlusStencil8, SIDE, 1), &fixed_view);
-        assert!(why.contains("depth_only"), "{why:?}");
-        let unbound = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: float,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
-        let why = refusal(&mut queries, &targets(&unbound, false), &view);
-        assert!(why.contains("TEXTURE_BINDING"), "{why:?}");
-    }
-}
-
-/// The frame of a backend that has failed: whatever was asked is unknown, at each stage.
-fn assert_fails(queries: &mut GpuQueries, proxy: Proxy, what: &str) {
-    queries.ask(Ticket(1), &[proxy], Want::Dual).expect("ask");
-    queries.ask(Ticket(2), &[proxy], Want::Any).expect("ask");
-    match answers(queries, Wait::Block) {
-        Err((Error::Device { .. }, found)) => {
-            assert_eq!(found, [(1, "Unknown".into()), (2, "Unknown".into())], "{what}");
-        }
-        other => panic!("{what}: {other:?}"),
-    }
-    assert_eq!(answers(queries, Wait::Poll).unwrap_or_default(), [], "{what}: nothing comes twice");
-}
-
-fn assert_works(queries: &mut GpuQueries, view: &View) {
-    queries.begin(view).expect("begin");
-    queries.ask(Ticket(3), &[flat(screen(), 0.5)], Want::Any).expect("ask");
-    assert_eq!(answers(queries, Wait::Block).expect("answers"), [(3, "Any(true)".into())]);
-    queries.end().expect("end");
-}
-
-#[test]
-fn a_mistake_of_the_app_is_an_error_and_the_next_frame_works() {
-    for gpu in gpus() {
-        let view = view();
-        let depth = depth_texture(&gpu, &view);
-        // A pipeline for another depth direction is fine, one for another sample count is not.
-        let wrong = view.clone().with_target(DepthDirection::Reversed, DepthFormat::Depth32Float, 4);
-        let wrong = ClipSpace::new(&gpu, &wrong, &[wall(&view, 0.5)]);
-        let mut queries = queries(&gpu);
-        queries.target(&targets(&depth, false));
-        queries.begin(&view).expect("begin");
-        queries.draw(|pass| wrong.draw(pass)).expect("it comes to light later");
-        assert_fails(&mut queries, flat(screen(), 0.5), "a wrong pipeline");
-        assert_works(&mut queries, &view);
-        // The same, found at the end of a frame.
-        queries.begin(&view).expect("begin");
-        queries.draw(|pass| wrong.draw(pass)).expect("it comes to light later");
-        assert!(matches!(queries.end(), Err(Error::Device { .. })));
-        assert_works(&mut queries, &view);
-    }
-}
-
-#[test]
-fn a_device_that_takes_too_long_is_an_error_and_the_next_frame_works() {
-    for gpu in gpus() {
-        let view = view();
-        let depth = depth_texture(&gpu, &view);
-        let config = GpuConfig { timeout: Duration::ZERO, ..GpuConfig::default() };
-        let mut hasty = gpu.exact_queries(config);
-        hasty.target(&targets(&depth, false));
-        let walls = vec![wall(&view, 0.5); 20_000];
-        let slow = ClipSpace::new(&gpu, &view, &walls);
-        hasty.begin(&view).expect("begin");
-        hasty.draw(|pass| slow.draw(pass)).expect("draw");
-        // OpenGL's driver may have done all the work by the time that it is asked.
-        hasty.ask(Ticket(1), &[flat(screen(), 0.25)], Want::Dual).expect("ask");
-        match answers(&mut hasty, Wait::Block) {
-            Err((Error::Device { .. }, found)) => assert_eq!(found, [(1, "Unknown".into())]),
-            Ok(found) => assert!(gpu.backend == wgpu::Backend::Gl && found.len() == 1, "{found:?}"),
-            other => panic!("{other:?}"),
-        }
-        drop(hasty.end());
-        let mut patient = queries(&gpu);
-        patient.target(&targets(&depth, false));
-        assert_works(&mut patient, &view);
-    }
-}
-
-#[test]
-fn a_lost_device_is_an_error() {
-    for gpu in gpus() {
-        let view = view();
-        let depth = depth_texture(&gpu, &view);
-        let mut queries = queries(&gpu);
-        queries.target(&targets(&depth, false));
-        queries.begin(&view).expect("begin");
-        let start = Instant::now();
-        gpu.device.destroy();
-        assert_fails(&mut queries, flat(screen(), 0.5), "a lost device");
-        drop(queries.end());
-        for _ in 0..3 {
-            let failed = queries.begin(&view).is_err() || {
-                let draw = queries.draw(|_| ()).is_err();
-                let ask = queries.ask(Ticket(9), &[flat(screen(), 0.5)], Want::Any).is_err();
-                draw || ask || answers(&mut queries, Wait::Block).is_err()
-            };
-            assert!(failed, "a lost device stays lost");
-            drop(queries.end());
-        }
-        assert!(start.elapsed() < Duration::from_secs(20), "nothing waits for a lost device");
-    }
 }

@@ -13,6 +13,8 @@ pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub backend: wgpu::Backend,
+    /// Whether a CPU does the work.
+    pub is_software: bool,
 }
 
 impl Gpu {
@@ -44,7 +46,9 @@ pub fn gpus() -> Vec<Gpu> {
                 ..Default::default()
             };
             let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");
-            Gpu { device, queue, backend: adapter.get_info().backend }
+            let info = adapter.get_info();
+            let is_software = info.device_type == wgpu::DeviceType::Cpu;
+            Gpu { device, queue, backend: info.backend, is_software }
         })
         .collect();
     if gpus.is_empty() {

@@ -3,15 +3,11 @@
 //! The loop is run twice: with the proxy as it is, and with the proxy raised by the bound that
 //! `query/gpu/pack.rs` states. The GPU must count at least the first and at most the second.
 
-use std::borrow::Cow;
-
-use glam::{Mat4, Vec3, Vec4};
+use glam::Vec4;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tercet::geom::{
-    Aabb, DepthDirection, DepthFormat, PixelRect, Proxy, Question, View, Viewport, projection,
-};
-use tercet::query::gpu::{Counting, FrameTargets, GpuConfig, GpuQueries, Shader, Shaders};
+use tercet::geom::{DepthDirection, DepthFormat, PixelRect, Proxy, Question, View, Viewport};
+use tercet::query::gpu::{GpuConfig, GpuQueries};
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 
 use crate::geometry::{ordinary_view, random_case, random_view};
@@ -19,7 +15,7 @@ use crate::support::{Gpu, Nearness, clip, depth_of, gpus, targets, ways};
 
 /// What a sweep met.
 #[derive(Clone, Copy, Debug, Default)]
-struct Tally {
+pub struct Tally {
     boxes: usize,
     /// Boxes that were hidden, or in sight, or neither wholly.
     hidden: usize,
@@ -29,7 +25,7 @@ struct Tally {
     /// Samples that only the GPU counts, as covered or in sight.
     more: u64,
     /// Answers outside the bounds.
-    faults: usize,
+    pub faults: usize,
 }
 
 /// Visible and covered samples of a proxy.
@@ -97,9 +93,9 @@ fn compare(queries: &mut GpuQueries, proxies: &[Proxy], nearness: &Nearness, tal
 }
 
 /// A convention of depth: direction, format, samples a pixel.
-type Convention = (DepthDirection, DepthFormat, u32);
+pub type Convention = (DepthDirection, DepthFormat, u32);
 
-fn conventions(gpu: &Gpu) -> Vec<Convention> {
+pub fn conventions(gpu: &Gpu) -> Vec<Convention> {
     let mut all = Vec::new();
     for direction in [DepthDirection::Reversed, DepthDirection::Standard] {
         for format in [DepthFormat::Depth32Float, DepthFormat::Depth24Plus] {
@@ -110,7 +106,7 @@ fn conventions(gpu: &Gpu) -> Vec<Convention> {
 }
 
 /// A view of some kind, of a size that is cheap to draw.
-fn view_of(dice: &mut ChaCha8Rng, (direction, format, samples): Convention) -> View {
+pub fn view_of(dice: &mut ChaCha8Rng, (direction, format, samples): Convention) -> View {
     loop {
         let ordinary = dice.random_bool(0.2) && direction == DepthDirection::Reversed;
         let view = if ordinary { ordinary_view(dice) } else { random_view(dice) };
@@ -204,7 +200,7 @@ fn ties(dice: &mut ChaCha8Rng, view: &View, nearness: &Nearness, count: usize) -
 }
 
 /// One view with some boxes, against the depth of some triangles.
-fn round(
+pub fn round(
     gpu: &Gpu,
     queries: &mut GpuQueries,
     dice: &mut ChaCha8Rng,
@@ -240,187 +236,4 @@ fn counts_equal_the_plain_loop() {
             }
         }
     }
-}
-
-/// A change of one shader, as text: what is replaced and by what.
-type Mutation = (&'static str, &'static str);
-
-/// Wherever the text occurs in the passes of one of the ways of counting.
-fn mutated(counting: Counting, (from, to): Mutation) -> Shaders {
-    let mut shaders = Shaders::default();
-    let passes = match counting {
-        Counting::Fragments => vec![&mut shaders.count_fragments],
-        Counting::Workgroups => vec![&mut shaders.count_workgroups],
-        Counting::Blocks => vec![&mut shaders.count_blocks, &mut shaders.gather_blocks],
-    };
-    let change = |source: &Cow<'static, str>| Cow::Owned(source.replace(from, to));
-    for shader in passes {
-        *shader = Shader { single: change(&shader.single), multisampled: change(&shader.multisampled) };
-    }
-    shaders
-}
-
-/// The comparison finds out about small mistakes in every shader.
-#[test]
-fn wrong_shaders_are_found_out() {
-    const SHARED: &[Mutation] = &[
-        ("nearness >= stored", "nearness > stored"),
-        ("nearness >= stored", "nearness <= stored"),
-        ("edges[k], d) >= 0.0", "edges[k], d) >= 1.0"),
-        ("k < 6u", "k < 5u"),
-        ("k < 3u", "k < 2u"),
-        ("+ 0.5", "+ 1.5"),
-        ("frame.origin + pixel", "pixel"),
-        ("frame.sign * ", ""),
-        ("k < frame.samples", "k + 1u < frame.samples"),
-        ("var nearness = (*proxy).nearest", "var nearness = 2.0"),
-        ("min(nearness, affine", "max(nearness, affine"),
-        ("f.y * d.y", "f.y * d.x"),
-    ];
-    const FRAGMENTS: &[Mutation] = &[
-        ("rect.x, rect.z", "rect.x, rect.z - 1u"),
-        ("rect.y, rect.w", "rect.y + 1u, rect.w"),
-        ("atomicAdd(&counts[i].total, frame.samples)", "atomicAdd(&counts[i].total, 2u)"),
-        ("atomicAdd(&counts[i].visible, seen)", "atomicStore(&counts[i].visible, seen)"),
-        ("if any && atomicLoad(&counts[i].visible) != 0u", "if any"),
-    ];
-    const WORKGROUPS: &[Mutation] = &[
-        ("corner + TILE", "corner + TILE - 1u"),
-        ("y += LANES", "y += LANES + 1u"),
-        ("x < end.x", "x + 1u < end.x"),
-        ("tile.column, tile.row", "tile.row, tile.column"),
-        ("covered += frame.samples", "covered += 2u"),
-        ("if any && seen != 0u {", "if any && seen > 64u {"),
-        (
-            "atomicAdd(&counts[i].visible, atomicLoad(&visible))",
-            "atomicStore(&counts[i].visible, atomicLoad(&visible))",
-        ),
-    ];
-    const BLOCKS: &[Mutation] = &[
-        ("first.x) * (end.y - first.y)", "first.x + 1u) * (end.y - first.y)"),
-        ("offset(proxy, end - 1u)", "offset(proxy, end - 2u)"),
-        ("entry_least >= range.y", "entry_least >= range.x"),
-        ("entry_most < range.x", "entry_most < range.y"),
-        ("if hidden && (inside || (*proxy).any != 0u)", "if hidden"),
-        ("if inside && entry_least", "if entry_least"),
-        ("select(first, last, f.xy", "select(last, first, f.xy"),
-        ("select(last, first, f.xy", "select(first, last, f.xy"),
-        ("+ lane.xy * BLOCK", "+ lane.xx * BLOCK"),
-        ("first + BLOCK, frame.size", "first + BLOCK - 1u, frame.size"),
-        ("min(range.x, pixel.x)", "range.x"),
-        ("max(range.y, pixel.y)", "range.y"),
-        ("min(range.x, stored)", "range.x"),
-        ("max(range.y, stored)", "range.y"),
-        ("blocks[at.y * grid.x + at.x]", "blocks[at.x * grid.y + at.y]"),
-    ];
-    // Those about several samples need an adapter that has them.
-    let Some(gpu) = gpus().into_iter().find(|gpu| gpu.sample_counts().len() > 1) else { return };
-    for (counting, own) in
-        [(Counting::Fragments, FRAGMENTS), (Counting::Workgroups, WORKGROUPS), (Counting::Blocks, BLOCKS)]
-    {
-        for &mutation in SHARED.iter().chain(own) {
-            let shaders = mutated(counting, mutation);
-            let sources = |shaders: &Shaders| {
-                [false, true].map(|several| {
-                    [shaders.source(counting, several), shaders.gather_blocks_source(several)].concat()
-                })
-            };
-            assert_ne!(sources(&shaders), sources(&Shaders::default()), "{mutation:?} changes nothing");
-            let config = GpuConfig { counting: Some(counting), shaders, ..GpuConfig::default() };
-            let mut queries = gpu.exact_queries(config);
-            let (mut dice, mut tally) = (ChaCha8Rng::seed_from_u64(11), Tally::default());
-            for convention in conventions(&gpu).into_iter().cycle().take(24) {
-                if tally.faults == 0 {
-                    round(&gpu, &mut queries, &mut dice, convention, &mut tally);
-                }
-            }
-            assert!(tally.faults > 0, "{counting:?} with {mutation:?} was not found out: {tally:?}");
-        }
-    }
-}
-
-/// Real triangles in a box, on the real rasteriser, in all kinds of views: no sample that they own
-/// lies outside of the box's proxy or before it, but for what an emulated depth range adds; and
-/// the answer counts all of them. This is what culling relies on.
-#[test]
-fn no_box_is_hidden_by_its_own_triangles() {
-    for gpu in gpus() {
-        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
-        let mut dice = ChaCha8Rng::seed_from_u64(5);
-        let slack = if gpu.backend == wgpu::Backend::Gl { 8.0 / 16_777_216.0 } else { 0.0 };
-        let (mut owned, mut most) = (0, f32::MIN);
-        for convention in conventions(&gpu) {
-            let mut asked = 0;
-            while asked < 30 {
-                let view = view_of(&mut dice, convention);
-                let case = random_case(&mut dice, |_| view.clone());
-                let Question::Ask(proxy) = Question::new(&case.world, &view) else { continue };
-                let triangles: Vec<_> =
-                    (0..20).map(|_| case.triangle(&mut dice).map(|p| case.clip(p))).collect();
-                let (depth, nearness) = depth_of(&gpu, &mut queries, &view, &triangles);
-                let mut drawn = 0;
-                for (x, y, stored) in nearness.drawn(view.depth().cleared()) {
-                    let covered = proxy.rect.contains(x, y) && proxy.covers(x, y);
-                    assert!(covered, "({x}, {y}) lies outside {proxy:?} of {case:#?}");
-                    let excess = stored - proxy.nearness(x, y);
-                    most = most.max(excess);
-                    assert!(excess <= slack, "({x}, {y}) lies {excess} before {proxy:?} of {case:#?}");
-                    drawn += 1;
-                }
-                let visible = ask_one(&mut queries, &view, &targets(&depth, true), &proxy);
-                assert!(visible >= drawn, "{visible} of {drawn} seen of {proxy:?} in {case:#?}");
-                asked += 1;
-                owned += drawn;
-            }
-        }
-        println!("{:?}: {owned} samples, at most {most} before their proxy", gpu.backend);
-        assert!(owned > 20_000, "{owned} samples");
-    }
-}
-
-/// A flat box that faces the viewer hides behind nothing of its own, at any distance: its depth is
-/// the same all over, so nothing but the allowance for rounding keeps it in sight.
-#[test]
-fn no_facing_box_is_hidden_by_itself() {
-    for gpu in gpus() {
-        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
-        let mut exact = gpu.exact_queries(GpuConfig::default());
-        let clip_from_view = projection::perspective(1.0, 1.0, 0.1);
-        let view = View::new(Mat4::IDENTITY, clip_from_view, Viewport::new(32, 32)).expect("a view");
-        let mut needed = 0;
-        for i in 0..200 {
-            let distance = 1.08f32.powi(i) * 0.2;
-            let half = Vec3::new(0.3, 0.2, 0.0) * distance;
-            let bounds = Aabb::from_center(Vec3::NEG_Z * distance, half);
-            let Question::Ask(proxy) = Question::new(&bounds, &view) else { panic!("{distance} m") };
-            let corner = |x: f32, y: f32| {
-                clip_from_view * (Vec3::new(x, y, 0.0) * half - Vec3::Z * distance).extend(1.0)
-            };
-            let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-            let (depth, nearness) = depth_of(&gpu, &mut queries, &view, &[[a, b, c], [a, c, d]]);
-            let drawn = nearness.drawn(0.0).count() as u32;
-            let targets = targets(&depth, true);
-            let visible = ask_one(&mut queries, &view, &targets, &proxy);
-            assert!(drawn > 0 && visible >= drawn, "{:?} at {distance} m: {visible} of {drawn}", gpu.backend);
-            needed += u32::from(ask_one(&mut exact, &view, &targets, &proxy) < drawn);
-        }
-        println!("{:?}: {needed} would be hidden without slack", gpu.backend);
-        assert!(needed == 0 || gpu.backend == wgpu::Backend::Gl, "{needed}");
-    }
-}
-
-/// How many samples of a proxy are in sight in a frame in which nothing is drawn.
-fn ask_one(queries: &mut GpuQueries, view: &View, targets: &FrameTargets, proxy: &Proxy) -> u32 {
-    queries.target(targets);
-    queries.begin(view).expect("begin");
-    queries.ask(Ticket(0), &[*proxy], Want::Dual).expect("ask");
-    let mut found = 0;
-    queries
-        .answers(Wait::Block, |_, answer| match answer {
-            Answer::Dual { visible, .. } => found = visible,
-            other => panic!("{other:?}"),
-        })
-        .expect("answers");
-    queries.end().expect("end");
-    found
 }

@@ -48,6 +48,12 @@
 //! A device that is lost, reports an error, or does not answer within [`GpuConfig::timeout`]: all
 //! open questions are answered [`Answer::Unknown`], which draws, and the call returns
 //! [`Error::Device`]. Nothing waits longer than that.
+//!
+//! # OpenGL
+//!
+//! wgpu emulates the depth range there, so that small depths are stored coarsely; proxies are
+//! brought nearer by as much (`pack.rs`), and with reversed z the farthest things are not culled.
+//! Multisampled depth is refused: wgpu 30 cannot make a texture of it that can be read.
 
 mod batch;
 mod bind;
@@ -65,6 +71,9 @@ mod targets;
 use std::time::Duration;
 
 use wgpu::{Adapter, Backend, Buffer, BufferDescriptor, BufferUsages, Device, Features, Queue, RenderPass};
+
+/// The wgpu that this backend speaks.
+pub use wgpu;
 
 pub use counter::Counting;
 pub use shaders::{Shader, Shaders};
