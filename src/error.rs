@@ -52,6 +52,18 @@ pub enum Error {
         /// The backend.
         backend: &'static str,
     },
+    /// Attachments that cannot be drawn into and asked about.
+    #[error("the frame's targets cannot be used: {why}")]
+    Target {
+        /// What is wrong, and what would be right.
+        why: String,
+    },
+    /// The graphics device failed, or did not answer in time.
+    #[error("the device failed: {why}; what was asked counts as visible, and the next frame starts anew")]
+    Device {
+        /// What it reported.
+        why: String,
+    },
     /// A policy of a name that does not exist.
     #[error("there is no policy {name:?}; the policies are {known}")]
     UnknownPolicy {

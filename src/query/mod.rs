@@ -1,5 +1,7 @@
 //! Is it hidden? A backend owns the depth of one frame and answers questions about boxes.
 
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod oracle;
 pub mod software;
 

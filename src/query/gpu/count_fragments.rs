@@ -1,0 +1,119 @@
+//! Counting in a fragment shader: the rectangles of all proxies in one instanced draw.
+//!
+//! It needs nothing but storage buffers in fragment shaders. The pass draws into a colour target
+//! of the viewport's size that nothing is written to, since a pass must have an attachment.
+
+use std::mem::offset_of;
+
+use wgpu::{
+    Color, ColorTargetState, ColorWrites, CommandEncoder, Device, Extent3d, FragmentState, LoadOp,
+    Operations, PrimitiveState, PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor,
+    RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderStages, StoreOp, TextureDescriptor,
+    TextureDimension, TextureFormat, TextureUsages, TextureView, VertexAttribute, VertexBufferLayout,
+    VertexFormat, VertexState, VertexStepMode,
+};
+
+use super::batch::Batch;
+use super::bind::{Bound, Layouts};
+use super::pack::PackedProxy;
+use crate::geom::Viewport;
+
+/// What the target holds does not matter.
+const FORMAT: TextureFormat = TextureFormat::R8Unorm;
+
+/// The pass.
+#[derive(Debug)]
+pub(super) struct CountFragments {
+    pipeline: RenderPipeline,
+    /// What the pass draws into, and its size.
+    canvas: Option<(TextureView, Viewport)>,
+}
+
+impl CountFragments {
+    /// The stages that read the frame and the depth.
+    pub(super) const STAGES: ShaderStages = ShaderStages::VERTEX_FRAGMENT;
+
+    /// Storage buffers of a batch, and whether they are written to.
+    pub(super) const BUFFERS: &[(u32, bool)] = &[(0, false), (1, true)];
+
+    pub(super) fn new(device: &Device, layouts: &Layouts, module: &ShaderModule) -> Self {
+        let rect = VertexAttribute {
+            format: VertexFormat::Uint32x4,
+            offset: offset_of!(PackedProxy, rect) as u64,
+            shader_location: 0,
+        };
+        let proxies = VertexBufferLayout {
+            array_stride: size_of::<PackedProxy>() as u64,
+            step_mode: VertexStepMode::Instance,
+            attributes: &[rect],
+        };
+        let nothing = ColorTargetState { format: FORMAT, blend: None, write_mask: ColorWrites::empty() };
+        let pipeline = device.create_render_pipeline(&RenderPipelineDescriptor {
+            label: Some("tercet count fragments"),
+            layout: Some(&layouts.pipeline),
+            vertex: VertexState {
+                module,
+                entry_point: Some("rectangle"),
+                compilation_options: Default::default(),
+                buffers: &[Some(proxies)],
+            },
+            primitive: PrimitiveState { topology: PrimitiveTopology::TriangleStrip, ..Default::default() },
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(FragmentState {
+                module,
+                entry_point: Some("count"),
+                compilation_options: Default::default(),
+                targets: &[Some(nothing)],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { pipeline, canvas: None }
+    }
+
+    pub(super) fn record(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        bound: &Bound<'_>,
+        batch: &Batch,
+        viewport: Viewport,
+    ) {
+        let size = Viewport::new(viewport.width, viewport.height);
+        let canvas = match &self.canvas {
+            Some((canvas, had)) if *had == size => canvas,
+            _ => &self.canvas.insert((canvas(device, size), size)).0,
+        };
+        let attachment = RenderPassColorAttachment {
+            view: canvas,
+            depth_slice: None,
+            resolve_target: None,
+            ops: Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Discard },
+        };
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("tercet count fragments"),
+            color_attachments: &[Some(attachment)],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, bound.frame, &[]);
+        pass.set_bind_group(1, bound.batch, &[]);
+        pass.set_vertex_buffer(0, batch.proxies.slice(..));
+        pass.draw(0..4, 0..batch.questions.proxies.len() as u32);
+    }
+}
+
+fn canvas(device: &Device, size: Viewport) -> TextureView {
+    let descriptor = TextureDescriptor {
+        label: Some("tercet canvas"),
+        size: Extent3d { width: size.width, height: size.height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format: FORMAT,
+        usage: TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    };
+    device.create_texture(&descriptor).create_view(&Default::default())
+}

@@ -1,0 +1,177 @@
+//! One frame: passes are recorded, submitted once a wave, and waited for.
+
+use std::time::Instant;
+
+use bytemuck::bytes_of;
+use wgpu::{BindGroup, CommandEncoder, RenderPass, SubmissionIndex};
+
+use super::batch::{Batch, State};
+use super::counter::Counters;
+use super::pack::PackedFrame;
+use super::questions::Terms;
+use super::targets::{FrameTargets, Kind};
+use super::{GpuConfig, GpuQueries, guard};
+use crate::Error;
+use crate::geom::View;
+use crate::query::Wait;
+
+/// What lives from `begin` to `end`.
+#[derive(Debug)]
+pub(super) struct Frame {
+    view: View,
+    targets: FrameTargets,
+    pub(super) terms: Terms,
+    bindings: BindGroup,
+    /// What was recorded since the last submission.
+    encoder: Option<CommandEncoder>,
+    /// Whether a pass has cleared the attachments, or loaded them for the first time.
+    opened: bool,
+    last_submission: Option<SubmissionIndex>,
+}
+
+impl GpuQueries {
+    pub(super) fn begin_frame(&mut self, view: &View) -> Result<(), Error> {
+        let Some(targets) = self.targets.clone() else {
+            return Err(Error::Target { why: "there are none: call GpuQueries::target first".into() });
+        };
+        targets.check(view, self.backend)?;
+        let several = view.samples() > 1;
+        let counters = match &mut self.counters[usize::from(several)] {
+            Some(counters) => counters,
+            none => {
+                let GpuConfig { counting, shaders, .. } = &self.config;
+                none.insert(Counters::new(&self.device, *counting, shaders, several)?)
+            }
+        };
+        counters.depth_changed();
+        let bindings = guard::guarded(&self.device, || {
+            self.queue.write_buffer(&self.uniforms, 0, bytes_of(&PackedFrame::new(view)));
+            counters.bind_frame(&self.device, &self.uniforms, targets.readable_depth())
+        })?;
+        self.frame = Some(Frame {
+            view: view.clone(),
+            targets,
+            terms: Terms::new(view.viewport(), self.slack, &self.device.limits()),
+            bindings,
+            encoder: None,
+            opened: false,
+            last_submission: None,
+        });
+        Ok(())
+    }
+
+    /// A pass on the app's attachments.
+    pub(super) fn open_pass(&mut self) -> Result<RenderPass<'static>, Error> {
+        self.stats.draw_passes += 1;
+        let frame = self.frame.as_mut().ok_or_else(not_begun)?;
+        self.counters.iter_mut().flatten().for_each(Counters::depth_changed);
+        Ok(frame.pass(&self.device, false))
+    }
+
+    /// Records the counting of all questions that are open.
+    pub(super) fn record_questions(&mut self) -> Result<(), Error> {
+        let frame = self.frame.as_mut().ok_or_else(not_begun)?;
+        if self.open.asked.is_empty() {
+            return Ok(());
+        }
+        if !frame.opened {
+            drop(frame.pass(&self.device, false));
+        }
+        let counters = self.counters[usize::from(frame.view.samples() > 1)].as_mut();
+        let counters = counters.expect("they were made when the frame began");
+        self.stats.question_passes += 1;
+        guard::guarded(&self.device, || {
+            let batch = free(&mut self.batches, &self.device);
+            batch.load(&self.device, &self.queue, &mut self.open);
+            let viewport = frame.view.viewport();
+            let encoder = frame.encoder.get_or_insert_with(|| encoder(&self.device));
+            counters.record(&self.device, encoder, &frame.bindings, batch, viewport);
+        })
+    }
+
+    /// Submits what was asked and looks, or waits, for what has arrived.
+    pub(super) fn bring_answers(&mut self, wait: Wait) -> Result<(), Error> {
+        self.record_questions()?;
+        if self.batches.iter().any(|batch| batch.state() == State::Recorded) {
+            self.submit()?;
+        }
+        match wait {
+            Wait::Poll => guard::poll(&self.device)?,
+            Wait::Block => self.block()?,
+        }
+        if self.batches.iter().any(|batch| batch.state() == State::Lost) {
+            return Err(guard::failed("counts could not be read back"));
+        }
+        Ok(())
+    }
+
+    /// The last pass: what must be cleared, although nothing was drawn, and what must be resolved.
+    pub(super) fn finish_frame(&mut self) -> Result<(), Error> {
+        let frame = self.frame.as_mut().ok_or_else(not_begun)?;
+        if !frame.opened || frame.targets.resolves() {
+            drop(frame.pass(&self.device, true));
+        }
+        self.submit()
+    }
+
+    /// Submits what was recorded since the last time.
+    fn submit(&mut self) -> Result<(), Error> {
+        let frame = self.frame.as_mut().ok_or_else(not_begun)?;
+        let Some(encoder) = frame.encoder.take() else { return Ok(()) };
+        self.stats.submits += 1;
+        // The app's own mistakes in a pass come to light when its recording is finished.
+        let commands = guard::guarded(&self.device, || encoder.finish())?;
+        let index = guard::guarded(&self.device, || {
+            let index = self.queue.submit([commands]);
+            let recorded = self.batches.iter().filter(|batch| batch.state() == State::Recorded);
+            recorded.for_each(Batch::await_counts);
+            index
+        })?;
+        frame.last_submission = Some(index);
+        Ok(())
+    }
+
+    /// Waits until every batch that was submitted has arrived.
+    fn block(&mut self) -> Result<(), Error> {
+        let frame = self.frame.as_ref().ok_or_else(not_begun)?;
+        let Some(index) = &frame.last_submission else { return Ok(()) };
+        let deadline = Instant::now() + self.config.timeout;
+        let is_waiting =
+            |batch: &Batch| batch.state() == State::Submitted && !batch.questions.asked.is_empty();
+        while self.batches.iter().any(is_waiting) {
+            let left = deadline.saturating_duration_since(Instant::now());
+            guard::wait(&self.device, index.clone(), left)?;
+            // Another thread that polls the device may still be about to say that they arrived.
+            if left.is_zero() && self.batches.iter().any(is_waiting) {
+                return Err(guard::failed(format!("no answer in {:?}", self.config.timeout)));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Frame {
+    fn pass(&mut self, device: &wgpu::Device, last: bool) -> RenderPass<'static> {
+        let first = !std::mem::replace(&mut self.opened, true);
+        let encoder = self.encoder.get_or_insert_with(|| encoder(device));
+        self.targets.pass(encoder, &self.view, Kind { first, last })
+    }
+}
+
+/// A batch that nobody uses.
+fn free<'a>(batches: &'a mut Vec<Batch>, device: &wgpu::Device) -> &'a mut Batch {
+    let found = batches.iter_mut().position(Batch::reclaim);
+    let index = found.unwrap_or(batches.len());
+    if found.is_none() {
+        batches.push(Batch::new(device));
+    }
+    &mut batches[index]
+}
+
+fn encoder(device: &wgpu::Device) -> CommandEncoder {
+    device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("tercet") })
+}
+
+pub(super) fn not_begun() -> Error {
+    Error::Target { why: "no frame has begun".into() }
+}

@@ -1,0 +1,279 @@
+//! The GPU backend: exact answers from the app's own depth buffer, on wgpu.
+//!
+//! The app owns the device and the attachments ([`FrameTargets`]). Draws and questions are
+//! recorded in the order in which they come and submitted once a wave, when answers are called
+//! for; counts come back through a ring of buffers. No optional feature of the device is needed.
+//!
+//! Answers are those of the software backend, to the sample, but for samples within a rounding of
+//! their threshold, which are counted as visible here (`pack.rs` has the bound). A target with
+//! several samples a pixel counts them all.
+//!
+//! ```no_run
+//! use tercet::Culler;
+//! use tercet::geom::View;
+//! use tercet::policy::DualQuery;
+//! use tercet::query::gpu::{FrameTargets, GpuQueries};
+//! use tercet::scene::Scene;
+//!
+//! fn frame(
+//!     (device, queue): (&wgpu::Device, &wgpu::Queue),
+//!     (color, depth): (wgpu::TextureView, wgpu::TextureView),
+//!     (scene, view): (&Scene, &View),
+//! ) -> Result<(), tercet::Error> {
+//!     let mut eye = Culler::new(DualQuery::default()); // kept from frame to frame, as is
+//!     let mut queries = GpuQueries::new(device, queue)?; // this
+//!     let sky = wgpu::LoadOp::Clear(wgpu::Color::BLUE);
+//!     queries.target(&FrameTargets::new(depth).with_color(color, sky));
+//!     eye.frame(scene, view, &mut queries, |pass, objects| {
+//!         // The app's own pipelines: state does not survive from one call to the next.
+//!         objects.iter().for_each(|_object| pass.draw(0..3, 0..1));
+//!     })?;
+//!     Ok(())
+//! }
+//! ```
+//!
+//! | file | |
+//! |---|---|
+//! | `targets` | what the app draws into, and the passes on it |
+//! | `questions`, `pack` | what was asked, as the shaders read it |
+//! | `counter`, `bind` | the ways of counting, behind one door |
+//! | `count_fragments`, `count_workgroups`, `gather_blocks` | one pass each |
+//! | `frame` | passes are recorded, submitted once a wave, and waited for |
+//! | `batch` | buffers of a question pass, from upload to read-back |
+//! | `shaders` | sources; the files are in `shaders/` |
+//! | `guard` | what the device reports, as errors instead of panics |
+//!
+//! # Failures
+//!
+//! A device that is lost, reports an error, or does not answer within [`GpuConfig::timeout`]: all
+//! open questions are answered [`Answer::Unknown`], which draws, and the call returns
+//! [`Error::Device`]. Nothing waits longer than that.
+//!
+//! # OpenGL
+//!
+//! wgpu emulates the depth range there, so that small depths are stored coarsely; proxies are
+//! brought nearer by as much (`pack.rs`), and with reversed z the farthest things are not culled.
+//! Multisampled depth is refused: wgpu 30 cannot make a texture of it that can be read.
+
+mod batch;
+mod bind;
+mod count_fragments;
+mod count_workgroups;
+mod counter;
+mod frame;
+mod gather_blocks;
+mod guard;
+mod pack;
+mod questions;
+mod shaders;
+mod targets;
+
+use std::time::Duration;
+
+use wgpu::{Adapter, Backend, Buffer, BufferDescriptor, BufferUsages, Device, Features, Queue, RenderPass};
+
+/// The wgpu that this backend speaks.
+pub use wgpu;
+
+pub use counter::Counting;
+pub use shaders::{Shader, Shaders};
+pub use targets::{ColorTarget, DepthTarget, FrameTargets};
+
+use super::{Answer, QueryBackend, Ticket, Wait, Want};
+use crate::Error;
+use crate::geom::{Proxy, View};
+use batch::Batch;
+use counter::Counters;
+use frame::Frame;
+use pack::{EMULATED_RANGE, PackedFrame};
+use questions::Questions;
+
+/// The dials of [`GpuQueries`].
+#[derive(Clone, Debug)]
+pub struct GpuConfig {
+    /// How samples are counted; None for the best that the device supports: questions about many
+    /// pixels by [`Counting::Blocks`], about few by [`Counting::Workgroups`].
+    pub counting: Option<Counting>,
+    /// The longest that [`Wait::Block`] waits.
+    pub timeout: Duration,
+    /// How much nearer than exact geometry may be stored beyond what `geom/proxy.rs` allows for;
+    /// None for what the device's API is known to need: nothing but on OpenGL, which emulates the
+    /// depth range.
+    pub depth_slack: Option<f32>,
+    /// The sources of the passes.
+    pub shaders: Shaders,
+}
+
+impl Default for GpuConfig {
+    fn default() -> Self {
+        Self {
+            counting: None,
+            timeout: Duration::from_secs(10),
+            depth_slack: None,
+            shaders: Shaders::default(),
+        }
+    }
+}
+
+/// Counters since [`QueryBackend::begin`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GpuStats {
+    /// Passes opened for the app's draws.
+    pub draw_passes: u64,
+    /// Passes that count.
+    pub question_passes: u64,
+    /// Boxes asked about.
+    pub boxes: u64,
+    /// Submissions to the queue.
+    pub submits: u64,
+}
+
+/// The GPU backend: it draws into the app's attachments and asks about what is there.
+///
+/// Draws of one wave are submitted together. So what `Queue::write_buffer` writes during a draw
+/// is there for all draws of the wave: data that differs between calls of the closure needs a
+/// place for each.
+#[derive(Debug)]
+pub struct GpuQueries {
+    device: Device,
+    queue: Queue,
+    config: GpuConfig,
+    backend: Backend,
+    slack: f32,
+    /// For targets with one sample a pixel and with several.
+    counters: [Option<Counters>; 2],
+    uniforms: Buffer,
+    targets: Option<FrameTargets>,
+    frame: Option<Frame>,
+    /// Asked and not yet recorded.
+    open: Questions,
+    batches: Vec<Batch>,
+    stats: GpuStats,
+}
+
+impl GpuQueries {
+    /// A backend on the app's device, whose handles it clones.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the device has no storage buffers in shaders, or refuses ours.
+    pub fn new(device: &Device, queue: &Queue) -> Result<Self, Error> {
+        Self::with_config(device, queue, GpuConfig::default())
+    }
+
+    /// The same with other dials.
+    ///
+    /// # Errors
+    /// As [`GpuQueries::new`]; also if the device does not support the way of counting.
+    pub fn with_config(device: &Device, queue: &Queue, config: GpuConfig) -> Result<Self, Error> {
+        let backend = device.adapter_info().backend;
+        let api_slack = if backend == Backend::Gl { EMULATED_RANGE } else { 0.0 };
+        let slack = config.depth_slack.unwrap_or(api_slack);
+        let counters = Counters::new(device, config.counting, &config.shaders, false)?;
+        let uniforms = guard::guarded(device, || {
+            device.create_buffer(&BufferDescriptor {
+                label: Some("tercet frame"),
+                size: size_of::<PackedFrame>() as u64,
+                usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        })?;
+        Ok(Self {
+            device: device.clone(),
+            queue: queue.clone(),
+            config,
+            backend,
+            slack,
+            counters: [Some(counters), None],
+            uniforms,
+            targets: None,
+            frame: None,
+            open: Questions::default(),
+            batches: Vec::new(),
+            stats: GpuStats::default(),
+        })
+    }
+
+    /// The optional features that a device should be asked for, of those that the adapter has:
+    /// none so far.
+    pub fn wanted_features(_adapter: &Adapter) -> Features {
+        Features::empty()
+    }
+
+    /// Says what the next frames draw into. They are checked when a frame begins.
+    pub fn target(&mut self, targets: &FrameTargets) {
+        self.targets = Some(targets.clone());
+    }
+
+    /// Counters since the frame began.
+    pub fn stats(&self) -> GpuStats {
+        self.stats
+    }
+
+    /// Everything that is open will not be answered.
+    fn deliver_unknown(&mut self, deliver: &mut impl FnMut(Ticket, Answer<'_>)) {
+        self.batches.iter().for_each(|batch| batch.questions.deliver(None, deliver));
+        self.open.deliver(None, deliver);
+        self.forget();
+    }
+
+    /// Forgets all questions.
+    fn forget(&mut self) {
+        self.open.clear();
+        self.batches.iter_mut().for_each(Batch::forget);
+        self.batches.retain(|batch| batch.state() != batch::State::Lost);
+    }
+}
+
+impl QueryBackend for GpuQueries {
+    type Pass = RenderPass<'static>;
+
+    fn name(&self) -> &'static str {
+        "wgpu"
+    }
+
+    fn can_block(&self) -> bool {
+        !cfg!(target_arch = "wasm32")
+    }
+
+    fn begin(&mut self, view: &View) -> Result<(), Error> {
+        self.forget();
+        self.frame = None;
+        self.stats = GpuStats::default();
+        self.begin_frame(view)
+    }
+
+    fn draw(&mut self, record: impl FnOnce(&mut RenderPass<'static>)) -> Result<(), Error> {
+        // What was asked before must not see what is drawn now.
+        self.record_questions()?;
+        record(&mut self.open_pass()?);
+        Ok(())
+    }
+
+    fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
+        let frame = self.frame.as_ref().ok_or_else(frame::not_begun)?;
+        self.open.ask(ticket, boxes, want, &frame.terms);
+        self.stats.boxes += boxes.len() as u64;
+        Ok(())
+    }
+
+    fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
+        let result = self.bring_answers(wait);
+        for batch in &mut self.batches {
+            let arrived = batch.read(|counts| batch.questions.deliver(Some(counts), &mut deliver));
+            if arrived.is_some() {
+                batch.forget();
+            }
+        }
+        if result.is_err() {
+            self.deliver_unknown(&mut deliver);
+        }
+        result
+    }
+
+    fn end(&mut self) -> Result<(), Error> {
+        let result = self.finish_frame();
+        self.forget();
+        self.frame = None;
+        result
+    }
+}

@@ -1,0 +1,80 @@
+//! The shaders' sources. WGSL has no includes: the parts are put together when the crate is built.
+
+use std::borrow::Cow;
+
+use super::Counting;
+
+/// The source of a pass, for targets with one sample a pixel and with several.
+#[derive(Clone, Debug)]
+pub struct Shader {
+    /// For one sample a pixel.
+    pub single: Cow<'static, str>,
+    /// For several.
+    pub multisampled: Cow<'static, str>,
+}
+
+impl Shader {
+    fn source(&self, multisampled: bool) -> &str {
+        if multisampled { &self.multisampled } else { &self.single }
+    }
+}
+
+/// The WGSL of every pass. The defaults are the files in `shaders/`; another source is for working
+/// around a driver, and for tests that break one on purpose.
+#[derive(Clone, Debug)]
+pub struct Shaders {
+    /// [`Counting::Fragments`].
+    pub count_fragments: Shader,
+    /// [`Counting::Workgroups`].
+    pub count_workgroups: Shader,
+    /// [`Counting::Blocks`].
+    pub count_blocks: Shader,
+    /// What [`Counting::Blocks`] gathers first.
+    pub gather_blocks: Shader,
+}
+
+impl Shaders {
+    /// The source that a way of counting uses.
+    pub fn source(&self, counting: Counting, multisampled: bool) -> &str {
+        let shader = match counting {
+            Counting::Fragments => &self.count_fragments,
+            Counting::Workgroups => &self.count_workgroups,
+            Counting::Blocks => &self.count_blocks,
+        };
+        shader.source(multisampled)
+    }
+
+    /// The source that gathers blocks.
+    pub fn gather_blocks_source(&self, multisampled: bool) -> &str {
+        self.gather_blocks.source(multisampled)
+    }
+}
+
+/// A pass, after the parts that it shares with others.
+macro_rules! shader {
+    ($($part:literal),*) => {
+        Shader {
+            single: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/question.wgsl"),
+                include_str!("../../../shaders/shared/depth.wgsl"),
+                $(include_str!(concat!("../../../shaders/", $part))),*
+            )),
+            multisampled: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/question.wgsl"),
+                include_str!("../../../shaders/shared/depth_multisampled.wgsl"),
+                $(include_str!(concat!("../../../shaders/", $part))),*
+            )),
+        }
+    };
+}
+
+impl Default for Shaders {
+    fn default() -> Self {
+        Self {
+            count_fragments: shader!("count_fragments.wgsl"),
+            count_workgroups: shader!("shared/tiles.wgsl", "count_workgroups.wgsl"),
+            count_blocks: shader!("shared/tiles.wgsl", "count_blocks.wgsl"),
+            gather_blocks: shader!("gather_blocks.wgsl"),
+        }
+    }
+}

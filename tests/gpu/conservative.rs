@@ -1,0 +1,161 @@
+//! Whole frames of the culler on the GPU: a culled object never owned a sample, in worlds in which
+//! everything changes every frame. The truth is the GPU's own: what the same draw calls show when
+//! nothing is culled.
+
+use tercet::Culler;
+use tercet::geom::{DepthFormat, Frustum, Viewport};
+use tercet::policy::{self, Policy};
+use tercet::query::gpu::{Counting, GpuConfig, GpuQueries, Shaders};
+use tercet::scene::{ObjectSet, Scene, SceneConfig};
+use tercet::worlds::{self, Model, Pathology};
+
+use crate::renderer::Renderer;
+use crate::stage::Stage;
+use crate::support::{Gpu, depth_texture, gpus, read_depth, targets, ways};
+
+const SCREEN: Viewport = Viewport::new(96, 54);
+const FRAMES: u32 = 12;
+
+/// What a run came to, over all frames.
+#[derive(Clone, Copy, Debug, Default)]
+struct Outcome {
+    /// Objects that owned a sample and were not drawn.
+    lost: usize,
+    /// Objects in the frustum that owned no sample, and those of them that were not drawn.
+    hidden: usize,
+    culled: usize,
+    /// Objects that owned a sample.
+    visible: usize,
+    /// Samples in which the culled frame differs from the whole one.
+    wrong: usize,
+    /// Submissions more than one a wave and one at the end.
+    extra_submits: i64,
+}
+
+/// Runs a policy over a world; `seed` decides what happens to it.
+fn run(
+    gpu: &Gpu,
+    queries: &mut GpuQueries,
+    policy: Box<dyn Policy>,
+    (model, seed): (Model, u64),
+    (format, samples): (DepthFormat, u32),
+    outcome: &mut Outcome,
+) {
+    let mut stage = Stage::new(model, seed, SCREEN, true);
+    let mut scene = Scene::new(SceneConfig::default());
+    let mut eye = Culler::new(policy);
+    let mut renderer = Renderer::new(gpu);
+    for frame in 0..FRAMES {
+        let view = stage.next(frame);
+        let view = view.clone().with_target(view.depth(), format, samples);
+        scene.sync(&stage.world);
+        renderer.prepare(&stage.world, &view, stage.detail);
+        let (seen, whole) = renderer.truth(&scene, &view);
+        let depth = depth_texture(gpu, &view);
+        queries.target(&targets(&depth, false));
+        let draw = |pass: &mut _, objects: &[_]| renderer.draw(pass, &view, objects);
+        let stats = eye.frame(&scene, &view, queries, draw).expect("a frame");
+        outcome.extra_submits += queries.stats().submits as i64 - i64::from(stats.waves) - 1;
+        let mut drawn = ObjectSet::default();
+        for object in eye.visible() {
+            assert!(drawn.insert(object.id), "an object was drawn twice");
+        }
+        let frustum = Frustum::new(&view);
+        for object in scene.objects() {
+            let (seen, drawn) = (seen.contains(object.object.id), drawn.contains(object.object.id));
+            outcome.visible += usize::from(seen);
+            outcome.lost += usize::from(seen && !drawn);
+            if !seen && object.bounds.is_some_and(|bounds| frustum.intersects(&bounds)) {
+                outcome.hidden += 1;
+                outcome.culled += usize::from(!drawn);
+            }
+        }
+        let (whole, shown) = (read_depth(gpu, &whole, &view), read_depth(gpu, &depth, &view));
+        outcome.wrong += whole.values.iter().zip(&shown.values).filter(|(a, b)| a != b).count();
+        scene.adapt([&mut eye]);
+    }
+}
+
+/// Policies that ask, with the dials that matter here.
+fn policies() -> Vec<(&'static str, Box<dyn Policy>)> {
+    let named = |name: &str| policy::by_name(name).expect("a policy of that name");
+    let mut visible_first = named("dual-query");
+    visible_first.set("order", "visible-first").expect("a dial of that name");
+    vec![
+        ("dual-query", named("dual-query")),
+        ("dual-query, visible first", visible_first),
+        ("statistical", named("statistical")),
+        ("stop-and-wait", named("stop-and-wait")),
+    ]
+}
+
+#[test]
+fn random_worlds() {
+    for gpu in gpus() {
+        for counting in ways() {
+            let config = GpuConfig { counting, ..GpuConfig::default() };
+            let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
+            for &samples in gpu.sample_counts() {
+                for (i, (name, _)) in policies().into_iter().enumerate() {
+                    let mut all = Outcome::default();
+                    for seed in 0..5 {
+                        let (_, policy) = policies().swap_remove(i);
+                        let formats = [DepthFormat::Depth32Float, DepthFormat::Depth24Plus];
+                        let target = (formats[seed as usize % 2], samples);
+                        let world = (worlds::random(seed, 120), seed);
+                        run(&gpu, &mut queries, policy, world, target, &mut all);
+                    }
+                    let run = format!("{:?}, {counting:?}, {samples} samples, {name}", gpu.backend);
+                    println!("{run}: {all:?}");
+                    assert_eq!((all.lost, all.wrong), (0, 0), "{run} lost objects: {all:?}");
+                    assert!(all.hidden > 1000 && all.visible > 500, "there are things to hide: {all:?}");
+                    assert!(all.culled * 3 > all.hidden, "{run} culled little: {all:?}");
+                    assert!(all.extra_submits <= 0, "{run} submits more than once a wave: {all:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Worlds that are hard on arithmetic: coincident, enormous, tiny and flat things.
+#[test]
+fn pathological_worlds() {
+    for gpu in gpus() {
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
+        let mut all = Outcome::default();
+        for (kind, seed) in Pathology::ALL.into_iter().zip(0..) {
+            for &samples in gpu.sample_counts() {
+                let policy = policy::by_name("dual-query").expect("a policy of that name");
+                let world = (worlds::pathological(kind), seed);
+                let target = (DepthFormat::Depth32Float, samples);
+                run(&gpu, &mut queries, policy, world, target, &mut all);
+                assert_eq!((all.lost, all.wrong), (0, 0), "{:?}, {kind:?}: {all:?}", gpu.backend);
+            }
+        }
+        println!("{:?}: {all:?}", gpu.backend);
+        assert!(all.culled > 0, "{all:?}");
+    }
+}
+
+/// Shaders that overlook some samples must be found out, or the suite proves nothing.
+#[test]
+fn lying_shaders_are_found_out() {
+    let Some(gpu) = gpus().into_iter().next() else { return };
+    for counting in Counting::ALL {
+        let mut shaders = Shaders::default();
+        for shader in [&mut shaders.count_fragments, &mut shaders.count_workgroups, &mut shaders.count_blocks]
+        {
+            let lie = "nearness >= stored && pixel.x % 8u == 0u";
+            shader.single = shader.single.replace("nearness >= stored", lie).into();
+        }
+        let config = GpuConfig { counting: Some(counting), shaders, ..GpuConfig::default() };
+        let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
+        let mut all = Outcome::default();
+        for seed in 0..3 {
+            let policy = policy::by_name("dual-query").expect("a policy of that name");
+            let world = (worlds::random(seed, 120), seed);
+            run(&gpu, &mut queries, policy, world, (DepthFormat::Depth32Float, 1), &mut all);
+        }
+        assert!(all.lost > 0 && all.wrong > 0, "{counting:?}: {all:?}");
+    }
+}

@@ -1,0 +1,16 @@
+//! The GPU backend, on every adapter that there is, against its twin on the CPU.
+
+mod conservative;
+mod failures;
+#[expect(dead_code, reason = "the slow rasteriser in it is for the proxies' own tests")]
+#[path = "../support/geometry.rs"]
+mod geometry;
+mod lifecycle;
+mod mutations;
+mod rasteriser;
+mod renderer;
+#[path = "../support/stage.rs"]
+mod stage;
+mod support;
+mod twin;
+mod wgsl;
