@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 use proptest::prelude::*;
-use tercet::{Costs, Voter};
 use tercet::geom::Aabb;
 use tercet::scene::{ObjectId, Scene, SceneConfig, Traits};
 use tercet::tree::{SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig, Votes};
+use tercet::{Costs, Voter};
 
 /// One step of a test. Indices are taken modulo what there is.
 #[derive(Clone, Debug)]
@@ -389,8 +389,8 @@ fn leaves_are_as_large_as_the_costs_ask_for() {
             scene.update();
             scene.tree().validate().expect("a valid tree");
         }
-        let leaves = scene.tree().nodes().filter(|n| n.is_leaf && n.objects > 0);
-        let leaves: Vec<_> = leaves.map(|n| n.objects).collect();
+        let leaves = scene.tree().nodes().filter(|n| n.is_leaf && n.own > 0);
+        let leaves: Vec<_> = leaves.map(|n| n.own).collect();
         let stats = scene.tree().stats();
         (64.0 / leaves.len() as f32, leaves.into_iter().max(), stats.splits + stats.merges)
     };
