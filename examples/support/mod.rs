@@ -1,9 +1,11 @@
-//! What the examples share: flags, measuring, plots and pictures.
+//! What the examples share: flags, measuring, plots and pictures. The bunny of some scenarios is
+//! read from a glTF file.
 
 pub mod canvas;
 pub mod chart;
 pub mod flags;
 pub mod last_frame;
+#[cfg(feature = "gltf")]
 pub mod lockstep;
 pub mod markdown;
 pub mod painter;
@@ -13,6 +15,7 @@ pub mod program;
 pub mod reference;
 pub mod report;
 pub mod run;
+#[cfg(feature = "gltf")]
 pub mod scenario;
 pub mod table;
 pub mod top_view;
