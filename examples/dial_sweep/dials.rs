@@ -2,6 +2,7 @@
 
 /// A dial's name, and its values in the order of the plot.
 pub const DIALS: &[(&str, &[&str])] = &[
+    ("preset", &["paper", "stable"]),
     ("r_split", &["0.001", "0.01", "0.05", "0.25", "0.5", "0.9"]),
     ("o_split", &["2", "3", "5", "8", "12", "24"]),
     ("leaf_size", &["fixed", "costs"]),

@@ -89,7 +89,7 @@ fn page(flags: &Flags, plan: &Plan, outcomes: &[Outcome]) -> String {
          One dial is turned at a time; the others keep the base's values. The base's rows are bold. Policy {}, \
          software backend, {} frames, {width} × {height}. All trees fly through the same world at the same time, \
          frame by frame, in an order that changes. Times are this \
-         machine's; counts hardly depend on it: only dials that are `auto` weigh the times seen.\n\nThe base: {}.\n\n\
+         machine's; counts hardly depend on it: only `n_skip=auto` and `leaf_size=costs` weigh the times seen.\n\nThe base: {}.\n\n\
          *Drawn*, *queries*, *waves* and *split + merged* (with those undone soon after, the *flips*) are means a \
          frame; *nodes* is the number after the last one. *Tree's share* is the time for keeping the tree over all \
          time. *Of base* is a figure over the base's; for times, the median of the ratios frame by frame.\n",

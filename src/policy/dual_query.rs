@@ -328,7 +328,10 @@ impl DualQuery {
             return;
         }
         if !state.visible {
-            self.turnover.was_hidden(!visible);
+            // An older memory says nothing of how long it stayed hidden.
+            if state.frame.wrapping_add(1) == cx.frame {
+                self.turnover.was_hidden(!visible);
+            }
         } else if state.asked_at != 0 {
             self.turnover.was_visible(state.share, cx.frame.wrapping_sub(state.asked_at), !visible);
         }

@@ -2,7 +2,7 @@
 //!
 //! The 2005 paper says only that nodes seen visible in several recent frames are queried less
 //! often. Asking about a leaf of `n` objects every `t` frames costs `q / t` a frame, where `q` is
-//! the cost of a question in objects drawn ([`Costs`]). Such a leaf becomes hidden with
+//! the cost of a question in objects drawn in vain ([`Costs`], [`IN_VAIN`]). Such a leaf becomes hidden with
 //! probability `p` a frame, and stays so for `s` frames on the mean. Of those frames it is drawn
 //! in vain until the next question, a part `m = 1 − s (1 − (1 − 1/s)ᵗ) / t`, if hidden spells are
 //! without memory, and asked about in all others, since only an answer of this very frame can
@@ -45,7 +45,11 @@ impl Skip {
     pub(super) fn parse(key: &str, value: &str) -> Result<Self, Error> {
         match value.trim() {
             "auto" => Ok(Self::Auto),
-            number => dial::number(key, number, 0..=1000).map(Self::AtMost),
+            number => dial::number(key, number, 0..=1000).map(Self::AtMost).map_err(|_| Error::Dial {
+                key: key.to_owned(),
+                value: value.to_owned(),
+                why: "it takes auto, or 0 to 1000".to_owned(),
+            }),
         }
     }
 
@@ -68,7 +72,7 @@ impl Skip {
                 let skip = (every - 1).min(trust);
                 // Leaves that became visible together must not all be asked about together: up to
                 // a third is taken off, by node.
-                skip - (leaf.node.index().wrapping_mul(0x9E37_79B1) >> 16) as u32 % (skip / 3 + 1)
+                skip - (leaf.node.index.wrapping_mul(0x9E37_79B1) >> 16) % (skip / 3 + 1)
             }
         }
     }
@@ -86,7 +90,9 @@ impl Share {
     pub(super) fn of(answer: Answer<'_>) -> Self {
         match answer {
             Answer::Dual { visible, total } if visible > 0 => {
-                Self((total / visible).ilog2().min(Self::COUNT as u32 - 1) as u8)
+                // A backend that counts more visible samples than there are has no share to tell.
+                let halvings = (total / visible).checked_ilog2().unwrap_or(0);
+                Self(halvings.min(Self::COUNT as u32 - 1) as u8)
             }
             _ => Self(0),
         }
@@ -142,14 +148,17 @@ impl Turnover {
         visible.chain([&mut self.shown, &mut self.asked]).for_each(|sum| *sum *= Self::FADE);
         self.spell = (self.asked + 0.08) / (self.shown + 0.01);
         for (unnoticed, t) in self.unnoticed.iter_mut().zip(INTERVALS) {
-            let stays = 1.0 - 1.0 / self.spell.max(1.0);
-            *unnoticed = 1.0 - self.spell.max(1.0) * (1.0 - stays.powi(t as i32)) / t as f32;
+            // In f64: for long spells it is a small difference of numbers near 1.
+            let (spell, t) = (f64::from(self.spell.max(1.0)), f64::from(t));
+            let ended = 1.0 - (1.0 - 1.0 / spell).powf(t);
+            *unnoticed = (1.0 - spell * ended / t).max(0.0) as f32;
         }
     }
 
     /// Of a leaf of which `share` was visible `frames` ago, nothing is visible now, or something.
     pub(super) fn was_visible(&mut self, share: Share, frames: u32, is_hidden: bool) {
-        self.frames[share.0 as usize] += frames.max(1) as f32;
+        // One that was out of view for long was not visible all the while.
+        self.frames[share.0 as usize] += frames.clamp(1, INTERVALS[INTERVALS.len() - 1]) as f32;
         self.hidden[share.0 as usize] += f32::from(u8::from(is_hidden));
     }
 
@@ -223,6 +232,38 @@ mod tests {
             |share| Skip::Auto.frames(Seen { share, ..leaf(1, 9) }, &Costs::of(IN_VAIN * 0.5), &seen);
         let wholly = Share::of(Answer::Dual { visible: 900, total: 1000 });
         assert!(frames(hardly) <= 2 && frames(wholly) >= 20, "{} {}", frames(hardly), frames(wholly));
+    }
+
+    #[test]
+    fn long_spells_are_told_apart_from_endless_ones() {
+        let every = |spell: f32| {
+            let mut seen = turnover(20, 1000, 100);
+            (seen.asked, seen.shown) = (spell, 1.0);
+            seen.begin();
+            seen.best_interval(Share(0), 2, 0.06)
+        };
+        assert_eq!((every(1e3), every(1e5), every(1e7)), (2, 2, 2));
+    }
+
+    #[test]
+    fn leaves_do_not_all_come_due_together() {
+        let mut tree = Tree::new(TreeConfig { bulk_leaf: 1, ..TreeConfig::default() });
+        (0..64).for_each(|i| tree.insert(i, &Aabb::from_center(Vec3::X * 3.0 * i as f32, Vec3::ONE)));
+        tree.update();
+        let (costs, seen) = (Costs::of(100.0), turnover(0, 1000, 100));
+        let mut skips: Vec<u32> = tree
+            .nodes()
+            .map(|n| Skip::Auto.frames(Seen { node: n.id, ..leaf(1, 9) }, &costs, &seen))
+            .collect();
+        skips.sort_unstable();
+        skips.dedup();
+        assert!(skips.len() >= 8 && skips[0] >= 20 && skips[skips.len() - 1] <= 30, "{skips:?}");
+    }
+
+    #[test]
+    fn a_count_that_cannot_be_has_no_share() {
+        assert_eq!(Share::of(Answer::Dual { visible: 3, total: 0 }), Share(0));
+        assert_eq!(Share::of(Answer::Dual { visible: 1, total: 1000 }), Share(7));
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub enum Answer<'a> {
     Any(bool),
     /// To [`Want::Dual`].
     Dual {
-        /// Samples that pass the depth test.
+        /// Samples that pass the depth test; never more than `total`.
         visible: u32,
         /// Samples that the box covers in the viewport.
         total: u32,

@@ -9,7 +9,9 @@
 //! might be found). Splitting a leaf of `n` objects costs about one question a frame more, worth
 //! `q` objects, and saves those that are hidden; if they are a quarter, it pays from `n = 4 q` on.
 //! So `O_split` is `4 q`, but never less than the dial, and three leaves that together hold less
-//! than half as many merge, whatever their answers say.
+//! than half as many merge, whatever their answers say; the bulk build aims at that half as well.
+//! (The rule for skipping questions counts an object in vain as several; here it counts as one, or
+//! leaves would stay fine where drawing is cheap.)
 
 use glam::Vec3;
 
@@ -65,7 +67,7 @@ impl Votes {
 const IDLE_SCAN: usize = 256;
 
 /// Frames for which an answer speaks for a merge: a view skips its questions for less, by default.
-const FRESH_FRAMES: u32 = 16;
+const FRESH_FRAMES: u32 = 32;
 
 impl Tree {
     /// Splits and merges leaves after the votes of all views. O(votes + changes).
@@ -125,13 +127,13 @@ impl Tree {
     /// Follows the costs of the view that asks at the least cost. As long as they want from two
     /// thirds to four thirds of the size that is, it stays: costs are never quite the same.
     fn find_leaf_size<'a>(&mut self, ballots: impl Iterator<Item = &'a Votes>) {
+        if self.config.leaf_size == LeafSize::Fixed {
+            return;
+        }
         let asked = ballots.filter(|ballot| !ballot.votes.is_empty());
         let question = asked.map(|ballot| ballot.costs.question()).min_by(f32::total_cmp);
-        let wanted = match (self.config.leaf_size, question) {
-            (LeafSize::FromCosts, Some(question)) => self.config.o_split.max((4.0 * question) as u32),
-            (LeafSize::FromCosts, None) => return,
-            (LeafSize::Fixed, _) => self.config.o_split,
-        };
+        let Some(question) = question else { return };
+        let wanted = self.config.o_split.max((4.0 * question) as u32);
         let (to, from) = (u64::from(wanted), u64::from(self.o_split));
         if 3 * to > 4 * from || 3 * to < 2 * from {
             self.o_split = wanted;
@@ -153,7 +155,7 @@ impl Tree {
     }
 
     /// The parent of a voting leaf, if its three children are not worth their questions. This needs
-    /// no time to cool: what has merged is far too small to split again.
+    /// no time to cool: what has merged is too small by half to split or to be built anew.
     fn too_small_parent(&self, node: NodeId) -> Option<u32> {
         if self.config.leaf_size == LeafSize::Fixed || !self.nodes.is_current(node) {
             return None;
@@ -183,7 +185,7 @@ impl Tree {
     fn fits_in_leaf(&self, parent: u32) -> bool {
         let small = |child| self.nodes.below[child as usize] <= self.config.o_merge;
         let stable = !self.config.merge_below_split
-            || self.nodes.below[parent as usize] < self.o_split.max(self.config.bulk_leaf);
+            || self.nodes.below[parent as usize] < self.o_split.max(self.bulk_leaf());
         self.has_leaf_children(parent) && stable && self.nodes.children(parent).all(small)
     }
 

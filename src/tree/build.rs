@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::config::Straddlers;
+use super::config::{LeafSize, Straddlers};
 use super::node::{Role, side};
 use super::place::{CONTENT, REFIT};
 use super::split::{Item, Site, choose};
@@ -22,11 +22,20 @@ impl Tree {
     /// their objects.
     pub(super) fn build_crowded(&mut self) {
         while let Some(leaf) = self.crowded.pop() {
-            let full = self.nodes.run[leaf as usize].len > self.config.bulk_leaf;
+            let full = self.nodes.run[leaf as usize].len > self.bulk_leaf();
             if self.nodes.is_alive(leaf) && self.nodes.is_leaf(leaf) && full {
-                let extent = Extent { leaf: self.config.bulk_leaf, levels: u32::MAX };
+                let extent = Extent { leaf: self.bulk_leaf(), levels: u32::MAX };
                 self.build(leaf, None, extent);
             }
+        }
+    }
+
+    /// Objects that a leaf of the bulk build holds at most: at least half of what makes a leaf worth
+    /// splitting, or what is built would merge.
+    pub(super) fn bulk_leaf(&self) -> u32 {
+        match self.config.leaf_size {
+            LeafSize::Fixed => self.config.bulk_leaf,
+            LeafSize::FromCosts => self.config.bulk_leaf.max(self.o_split / 2),
         }
     }
 

@@ -105,7 +105,7 @@ impl Tree {
 
     /// Lists a leaf for the next build when it has grown to the size from which one is tried.
     fn note_crowded(&mut self, node: u32) {
-        let limit = self.config.bulk_leaf.max(1).saturating_mul(4);
+        let limit = self.bulk_leaf().max(1).saturating_mul(4);
         let from = limit.max(self.nodes.retry_at[node as usize]);
         if self.nodes.is_leaf(node) && self.nodes.run[node as usize].len == from {
             self.crowded.push(node);

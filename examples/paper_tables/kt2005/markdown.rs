@@ -130,8 +130,8 @@ fn details(outcomes: &[Outcome]) -> String {
 fn notes(flags: &Flags, outcomes: &[Outcome]) -> String {
     let mut notes = "\
         - Times are those of this machine, which draws on the CPU; the paper's was an Athlon MP 2600+ with a \
-        GeForce 6800 GT, so only ratios compare. Counts hardly depend on the machine: only dials that are \
-        `auto` weigh the times seen.\n\
+        GeForce 6800 GT, so only ratios compare. Counts hardly depend on the machine: only \
+        `n_skip=auto` and `leaf_size=costs` weigh the times seen.\n\
         - *Tree's share* is the time for placing, refitting, splitting and merging over all time (the paper: \
         0.2 % to nearly 30 %). *Waves* are the times that a frame waits for answers.\n\
         - The paper's power plant is the one of the University of North Carolina; ours is generated, with as \

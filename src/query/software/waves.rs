@@ -2,7 +2,8 @@
 //!
 //! Draw calls are gathered into *waves* that fit the cache. Of each wave, vertices are transformed
 //! once, in parallel; chunks of triangles are set up and binned by bands of rows, in parallel; then
-//! every band is rasterised, in parallel, each by one thread that owns its rows. Nothing is locked,
+//! every band is rasterised, in parallel, each by one thread that owns its rows (all by one where
+//! there is little to do). Nothing is locked,
 //! and no result depends on who did what. With one thread there is one band, and each chunk is
 //! rasterised while it is in the cache. All buffers are kept between frames.
 
