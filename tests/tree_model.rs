@@ -312,21 +312,32 @@ fn the_root_grows_and_shrinks_again() {
     assert!(after.depth <= depth + 60, "depth {depth} became {}", after.depth);
 }
 
-/// The published constants split a visible leaf of twelve and merge three siblings of five.
-#[test]
-fn the_published_rule_splits_and_merges() {
-    let mut scene = Scene::new(SceneConfig { tree: TreeConfig::paper(), ..SceneConfig::default() });
-    for i in 0..12 {
+/// Objects in a row, 10 m apart.
+fn row(count: usize, tree: TreeConfig) -> Scene {
+    let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
+    for i in 0..count {
         let center = Vec3::new(i as f32 * 10.0, 0.0, 0.0);
         scene.insert(Aabb::from_center(center, Vec3::ONE), Traits::default());
     }
     scene.update();
+    scene
+}
+
+/// A view along x that saw `visible` per cent of every leaf.
+fn ballot(scene: &Scene, visible: u32) -> Ballot {
+    let mut ballot = Ballot(Votes { forward: Vec3::X, ..Votes::default() });
+    let leaves = scene.tree().nodes().filter(|n| n.is_leaf);
+    leaves.for_each(|leaf| ballot.0.count(leaf.id, visible, 100));
+    ballot
+}
+
+/// The published constants split a visible leaf of twelve and merge three siblings of five.
+#[test]
+fn the_published_rule_splits_and_merges() {
+    let mut scene = row(12, TreeConfig::paper());
     assert_eq!(scene.tree().stats().nodes, 1, "twelve fit the bulk build's leaf");
     let vote = |scene: &mut Scene, visible: u32| {
-        let leaves: Vec<_> = scene.tree().nodes().filter(|n| n.is_leaf).map(|n| n.id).collect();
-        let mut ballot = Ballot(Votes { forward: Vec3::X, ..Votes::default() });
-        leaves.iter().for_each(|&leaf| ballot.0.count(leaf, visible, 100));
-        scene.adapt([&mut ballot]);
+        scene.adapt([&mut ballot(scene, visible)]);
         scene.update();
         scene.tree().validate().expect("a valid tree");
         scene.tree().stats()
@@ -340,18 +351,7 @@ fn the_published_rule_splits_and_merges() {
 #[test]
 fn one_dissenting_view_prevents_a_merge() {
     let tree = TreeConfig { o_merge: 50, cooldown: 0, merge_below_split: false, ..TreeConfig::paper() };
-    let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
-    for i in 0..12 {
-        let center = Vec3::new(i as f32 * 10.0, 0.0, 0.0);
-        scene.insert(Aabb::from_center(center, Vec3::ONE), Traits::default());
-    }
-    scene.update();
-    let ballot = |scene: &Scene, visible: u32| {
-        let votes = scene.tree().nodes().filter(|n| n.is_leaf).map(|n| n.id);
-        let mut ballot = Ballot(Votes { forward: Vec3::X, ..Votes::default() });
-        votes.for_each(|leaf| ballot.0.count(leaf, visible, 100));
-        ballot
-    };
+    let mut scene = row(12, tree);
     let mut split = ballot(&scene, 100);
     scene.adapt([&mut split]);
     assert_eq!(scene.tree().stats().splits, 1);
@@ -370,21 +370,15 @@ fn one_dissenting_view_prevents_a_merge() {
 /// Where questions are dear, leaves hold more objects; the cheapest view decides.
 #[test]
 fn leaves_are_as_large_as_the_costs_ask_for() {
-    let mut scene = Scene::new(SceneConfig::default());
-    for i in 0..64 {
-        let center = Vec3::new(i as f32 * 10.0, 0.0, 0.0);
-        scene.insert(Aabb::from_center(center, Vec3::ONE), Traits::default());
-    }
-    scene.update();
-    let ballot = |scene: &Scene, objects: f32| {
-        let leaves = scene.tree().nodes().filter(|n| n.is_leaf).map(|n| n.id);
-        let mut ballot = Ballot(Votes { costs: Costs::of(objects), ..Votes::default() });
-        leaves.for_each(|leaf| ballot.0.count(leaf, 100, 100));
+    let mut scene = row(64, TreeConfig::default());
+    let at_cost = |scene: &Scene, objects: f32| {
+        let mut ballot = ballot(scene, 100);
+        ballot.0.costs = Costs::of(objects);
         ballot
     };
     let mut settle = |costs: &[f32]| {
         for _ in 0..200 {
-            let mut ballots: Vec<_> = costs.iter().map(|&c| ballot(&scene, c)).collect();
+            let mut ballots: Vec<_> = costs.iter().map(|&c| at_cost(&scene, c)).collect();
             scene.adapt(&mut ballots);
             scene.update();
             scene.tree().validate().expect("a valid tree");

@@ -6,8 +6,8 @@ use plotters::prelude::*;
 
 use crate::outcome::Outcome;
 use crate::plan::{Plan, Sweep};
-use crate::support::canvas::{self, FAINT, GRID, INK, Key, Sheet, px, text};
-use crate::support::chart::panel;
+use crate::support::canvas::{self, FAINT, INK, Key, Sheet, px, text};
+use crate::support::chart::{panel, plain};
 use crate::support::flags::Flags;
 
 const WIDTH: u32 = 1500;
@@ -87,13 +87,8 @@ fn draw(cell: &Sheet<'_>, sweep: &Sweep, curves: &[Curve<'_>], noise: f64) -> an
         .y_label_area_size(px(52))
         .build_cartesian_2d(-0.5..last + 0.5, bottom..top)?;
     chart.draw_series([Rectangle::new([(-0.5, 1.0 - noise), (last + 0.5, 1.0 + noise)], NOISE.filled())])?;
-    chart
-        .configure_mesh()
+    plain(&mut chart.configure_mesh())
         .disable_x_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(px(1) as u32))
-        .axis_style(FAINT.stroke_width(px(1) as u32))
-        .label_style(text(13, FAINT))
         .x_labels(0)
         .y_labels(6)
         .y_label_formatter(&|y| format!("{y:.1}"))

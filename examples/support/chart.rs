@@ -1,5 +1,6 @@
 //! Charts over the frames of a run.
 
+use plotters::chart::MeshStyle;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -26,20 +27,29 @@ where
         .x_label_area_size(px(44))
         .y_label_area_size(px(66))
         .build_cartesian_2d(0.0..last, range)?;
-    chart
-        .configure_mesh()
+    plain(&mut chart.configure_mesh())
         .disable_x_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(px(1) as u32))
-        .axis_style(FAINT.stroke_width(px(1) as u32))
-        .label_style(text(13, FAINT))
-        .axis_desc_style(text(14, INK))
         .x_desc("frame")
         .y_desc(unit)
         .x_label_formatter(&whole)
         .y_label_formatter(&|y| format!("{y}"))
         .draw()?;
     Ok(chart)
+}
+
+/// The house's style of axes and grid.
+pub fn plain<'a, 'b, 'm, X, Y>(
+    mesh: &'m mut MeshStyle<'a, 'b, X, Y, BitMapBackend<'a>>,
+) -> &'m mut MeshStyle<'a, 'b, X, Y, BitMapBackend<'a>>
+where
+    X: Ranged,
+    Y: Ranged,
+{
+    mesh.light_line_style(TRANSPARENT)
+        .bold_line_style(GRID.stroke_width(px(1) as u32))
+        .axis_style(FAINT.stroke_width(px(1) as u32))
+        .label_style(text(13, FAINT))
+        .axis_desc_style(text(14, INK))
 }
 
 /// A round number to end an axis at: the least of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten

@@ -2,11 +2,11 @@
 //!
 //! The 2005 paper says only that nodes seen visible in several recent frames are queried less
 //! often. Asking about a leaf of `n` objects every `t` frames costs `q / t` a frame, where `q` is
-//! the cost of a question in objects drawn in vain ([`Costs`], [`IN_VAIN`]). Such a leaf becomes hidden with
-//! probability `p` a frame, and stays so for `s` frames on the mean. Of those frames it is drawn
-//! in vain until the next question, a part `m = 1 − s (1 − (1 − 1/s)ᵗ) / t`, if hidden spells are
-//! without memory, and asked about in all others, since only an answer of this very frame can
-//! cull it. So a frame costs
+//! the cost of a question in objects drawn in vain ([`Costs`], [`IN_VAIN`]). Such a leaf becomes
+//! hidden with probability `p` a frame, and stays so for `s` frames on the mean. Of those frames it
+//! is drawn in vain until the next question, a part `m = 1 − s (1 − (1 − 1/s)ᵗ) / t`, if hidden
+//! spells are without memory, and asked about in all others, since only an answer of this very frame
+//! can cull it. So a frame costs
 //!
 //! ```text
 //! q / t  +  p s (n m + q (1 − m))

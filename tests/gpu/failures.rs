@@ -8,8 +8,8 @@ use tercet::query::gpu::{FrameTargets, GpuConfig, GpuQueries};
 use tercet::query::{QueryBackend, Ticket, Wait, Want};
 
 use crate::lifecycle::{SIDE, answers, queries, screen, view, wall};
+use crate::proxies::flat;
 use crate::support::{ClipSpace, depth_texture, gpus, targets, texture};
-use crate::twin::flat;
 
 /// Why a frame cannot begin with some targets.
 fn refusal(queries: &mut GpuQueries, targets: &FrameTargets, view: &View) -> String {

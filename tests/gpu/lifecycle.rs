@@ -8,8 +8,8 @@ use tercet::geom::{DepthDirection, DepthFormat, PixelRect, View, Viewport, proje
 use tercet::query::gpu::{ColorTarget, DepthTarget, FrameTargets, GpuConfig, GpuQueries};
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 
+use crate::proxies::flat;
 use crate::support::{ClipSpace, Gpu, clip, depth_texture, gpus, read_buffer, targets, texture, ways};
-use crate::twin::flat;
 
 pub const SIDE: u32 = 64;
 

@@ -7,6 +7,8 @@ mod failures;
 mod geometry;
 mod lifecycle;
 mod mutations;
+#[path = "../support/proxies.rs"]
+mod proxies;
 mod rasteriser;
 mod renderer;
 #[path = "../support/stage.rs"]

@@ -3,5 +3,7 @@
 mod clipping;
 mod coverage;
 mod oracle;
+#[path = "../support/proxies.rs"]
+mod proxies;
 mod questions;
 mod support;

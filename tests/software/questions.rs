@@ -2,22 +2,17 @@
 
 use glam::Vec3;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use tercet::geom::{Aabb, PixelRect, Proxy, Question, View, Viewport};
 use tercet::query::software::SoftwareQueries;
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 
+use crate::proxies::{flat, random_proxy};
 use crate::support::{LEVELS, add, dice, draw, pixel_view, pool, soup, triangles};
 
 /// A question whose answer nobody waits for.
 pub(crate) fn ask_anything(queries: &mut SoftwareQueries) {
     queries.ask(Ticket(0), &[flat(PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 }, 0.5)], Want::Any).expect("ask");
     queries.answers(Wait::Block, |_, _| {}).expect("answers");
-}
-
-/// A proxy that fills a rectangle at one nearness.
-fn flat(rect: PixelRect, nearest: f32) -> Proxy {
-    Proxy { rect, edges: [[0.0; 3]; 6], planes: [[0.0, 0.0, f32::MAX]; 3], nearest }
 }
 
 /// The plain loop of the contract: visible and covered samples.
@@ -35,32 +30,6 @@ fn plain(proxy: &Proxy, queries: &SoftwareQueries) -> (u32, u32) {
     (visible, total)
 }
 
-/// A random convex outline and tilted planes, in a random rectangle.
-fn random_proxy(dice: &mut ChaCha8Rng, width: u32, height: u32) -> Proxy {
-    let mut range = |side: u32| {
-        let a = dice.random_range(0..side);
-        let b = if dice.random_range(0..3) == 0 { a } else { dice.random_range(0..side) };
-        (a.min(b), a.max(b) + 1)
-    };
-    let ((x0, x1), (y0, y1)) = (range(width), range(height));
-    let (w, h) = ((x1 - x0) as f32, (y1 - y0) as f32);
-    let mut proxy = flat(PixelRect { x0, y0, x1, y1 }, dice.random_range(0.1..1.1));
-    for edge in proxy.edges.iter_mut().take(dice.random_range(0..=6)) {
-        let angle: f32 = dice.random_range(0.0..std::f32::consts::TAU);
-        let (a, b) = (angle.cos(), angle.sin());
-        *edge = [a, b, -(a * w * 0.5 + b * h * 0.5) + dice.random_range(-0.1..0.6) * w.max(h)];
-    }
-    for plane in proxy.planes.iter_mut().take(dice.random_range(0..=3)) {
-        let slope = [0.0, 1e-4, 0.01][dice.random_range(0..3)];
-        *plane = [
-            dice.random_range(-1.0..=1.0) * slope,
-            dice.random_range(-1.0..=1.0) * slope,
-            dice.random_range(0.0..1.2),
-        ];
-    }
-    proxy
-}
-
 #[test]
 fn answers_equal_the_plain_loop() {
     let sizes = [(1, 1), (1, 40), (40, 1), (17, 3), (64, 64), (333, 211), (1023, 767)];
@@ -70,7 +39,7 @@ fn answers_equal_the_plain_loop() {
         let near = soup(&triangles(&mut dice, 60, width, height));
         let far = soup(&triangles(&mut dice, 60, width, height));
         let count = if width > 1000 { 60 } else { 300 };
-        let proxies: Vec<Proxy> = (0..count).map(|_| random_proxy(&mut dice, width, height)).collect();
+        let proxies: Vec<Proxy> = (0..count).map(|_| random_proxy(&mut dice, [width, height], 0.0)).collect();
         for threads in [1, 2, 4] {
             pool(threads).install(|| {
                 for level in LEVELS {

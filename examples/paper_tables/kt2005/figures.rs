@@ -9,7 +9,7 @@ use super::Outcome;
 use super::rows::seconds;
 use super::scenes::Published;
 use crate::support::canvas::{self, FAINT, GRID, INK, Key, Sheet, px, text};
-use crate::support::chart::{axes, nice_top, panel};
+use crate::support::chart::{axes, nice_top, panel, plain};
 use crate::support::flags::Flags;
 use crate::support::lockstep::Measured;
 use crate::support::report::{FrameRecord, percentile};
@@ -149,14 +149,8 @@ impl Figure {
             .x_label_area_size(px(44))
             .y_label_area_size(px(LABELS))
             .build_cartesian_2d(0.0..top, (rows.len() as f64 - 0.5)..-0.5)?;
-        chart
-            .configure_mesh()
+        plain(&mut chart.configure_mesh())
             .disable_y_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(GRID.stroke_width(px(1) as u32))
-            .axis_style(FAINT.stroke_width(px(1) as u32))
-            .label_style(text(13, FAINT))
-            .axis_desc_style(text(14, INK))
             .x_desc("new / old; left of 1, the new one is better")
             .x_label_formatter(&|x| format!("{x:.1}"))
             .y_labels(0)
