@@ -3,6 +3,7 @@
 //! The loop is run twice: with the proxy as it is, and with the proxy raised by the bound that
 //! `query/gpu/pack.rs` states. The GPU must count at least the first and at most the second.
 
+use crate::proxies::flat;
 use glam::Vec4;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
