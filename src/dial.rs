@@ -15,11 +15,50 @@ pub struct Dial {
     pub value: String,
     /// What it does, and which values it takes.
     pub about: String,
+    /// What kind of value it takes: which control fits it.
+    pub kind: DialKind,
+}
+
+/// What kind of value a [`Dial`] takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DialKind {
+    /// true or false.
+    Switch,
+    /// A whole number.
+    Whole,
+    /// A number.
+    Real,
+    /// One of these.
+    Choice(Vec<&'static str>),
+    /// Whatever the description says.
+    Text,
+}
+
+/// A type whose values a dial shows as they are.
+pub(crate) trait Plain: Display {
+    /// What a dial of this type takes.
+    const KIND: DialKind;
+}
+
+impl Plain for bool {
+    const KIND: DialKind = DialKind::Switch;
+}
+
+impl Plain for u32 {
+    const KIND: DialKind = DialKind::Whole;
+}
+
+impl Plain for f32 {
+    const KIND: DialKind = DialKind::Real;
+}
+
+impl Plain for String {
+    const KIND: DialKind = DialKind::Text;
 }
 
 impl Dial {
-    pub(crate) fn new(key: &'static str, value: impl Display, about: &str) -> Self {
-        Self { key, value: value.to_string(), about: about.to_owned() }
+    pub(crate) fn new<T: Plain>(key: &'static str, value: T, about: &str) -> Self {
+        Self { key, value: value.to_string(), about: about.to_owned(), kind: T::KIND }
     }
 
     /// A dial that takes one of a few named values.
@@ -30,7 +69,8 @@ impl Dial {
         about: &str,
     ) -> Self {
         let current = names.iter().find(|(_, v)| *v == value).map_or("", |(name, _)| *name);
-        Self { key, value: current.to_owned(), about: format!("{about}: {}", join(names)) }
+        let kind = DialKind::Choice(names.iter().map(|(name, _)| *name).collect());
+        Self { key, value: current.to_owned(), about: format!("{about}: {}", join(names)), kind }
     }
 }
 

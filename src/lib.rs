@@ -85,7 +85,7 @@ pub mod worlds;
 
 pub use costs::Costs;
 pub use culler::{Culler, Voter};
-pub use dial::Dial;
+pub use dial::{Dial, DialKind};
 pub use error::Error;
 pub use stats::FrameStats;
 pub use tradeoff::Tradeoff;

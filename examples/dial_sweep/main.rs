@@ -59,7 +59,7 @@ fn main() -> anyhow::Result<()> {
     type Build = fn(&Flags) -> anyhow::Result<Scenario>;
     let worlds: [Build; 2] = [
         |flags| Scenario::power_plant(flags, !flags.still),
-        |flags| Ok(Scenario::teapots(flags, !flags.still)),
+        |flags| Ok(Scenario::teapots(flags, flags.objects, !flags.still)),
     ];
     let style = "{bar:30} {pos} of {len} frames, {elapsed} so far, {eta} left: {msg}";
     let frames = worlds.len() as u64 * plan.trees.len() as u64 * u64::from(flags.frames);
@@ -70,7 +70,7 @@ fn main() -> anyhow::Result<()> {
         let name = scenario.name.clone();
         bar.suspend(|| println!("{name}: {} trees, {} frames", plan.trees.len(), flags.frames));
         bar.set_message(name.clone());
-        let lane = |tree: &_| Lane::new(flags.policy()?, Clone::clone(tree));
+        let lane = |tree: &_| Lane::new(&flags, flags.policy()?, Clone::clone(tree));
         let lanes = plan.trees.iter().map(lane).collect::<anyhow::Result<_>>()?;
         let lanes = lockstep::run(scenario, &flags, lanes, || bar.inc(1))?;
         outcomes.push(Outcome::new(name, lanes));

@@ -59,7 +59,8 @@ pub struct Flags {
     #[arg(long = "static")]
     pub still: bool,
 
-    /// Open no window. There is none yet: every run is headless
+    /// Open no window: fly once, then write figures and pictures. So do --oracle and --out, and a
+    /// machine without a display
     #[arg(long)]
     pub headless: bool,
 
@@ -87,11 +88,12 @@ pub struct NoMore {}
 /// What `--backend` takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
-    /// The best that there is: for now, software
+    /// The GPU where there is one, and else the CPU
     Auto,
     /// The CPU, on all cores; needs no GPU
     Software,
-    /// The GPU (not there yet)
+    /// wgpu, on a CPU that plays the GPU's part if need be; WGPU_BACKEND=vulkan|gl|dx12|metal
+    /// chooses
     Wgpu,
 }
 
@@ -161,6 +163,11 @@ impl Flags {
         }
     }
 
+    /// Whether figures are wanted rather than a window.
+    pub fn is_headless(&self) -> bool {
+        self.headless || self.oracle || self.out.is_some()
+    }
+
     /// The rectangle that is drawn.
     pub fn viewport(&self) -> Viewport {
         Viewport::new(self.size.0, self.size.1)
@@ -173,9 +180,6 @@ impl Flags {
 
     /// Refuses what cannot be done, before a world is built.
     fn check(&self) -> anyhow::Result<()> {
-        if self.backend == Backend::Wgpu {
-            bail!("--backend wgpu: the GPU backend is not there yet; use software or auto");
-        }
         if let Some(file) = &self.record {
             bail!("--record {}: recording is not there yet; run without it", file.display());
         }
@@ -254,6 +258,7 @@ fn catalogue(program: &Program) -> String {
         key: dial.key,
         value: value.to_string(),
         about: dial.about.to_owned(),
+        kind: tercet::DialKind::Real,
     };
     let detail = if program.full_detail { Detail::FULL } else { Detail::default() };
     let own = [own(MAX_ERROR, detail.max_error_px), own(FLIGHT_END, 1.0)];
@@ -316,7 +321,7 @@ mod tests {
     #[test]
     fn what_cannot_be_done_is_refused() {
         for line in [
-            "--backend wgpu",
+            "--backend nonsense",
             "--record frames.bin",
             "--policy nonsense",
             "--set nonsense=1",

@@ -10,7 +10,6 @@ use rand_chacha::ChaCha8Rng;
 use tercet::Culler;
 use tercet::geom::View;
 use tercet::policy::Policy;
-use tercet::query::software::SoftwareQueries;
 use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::{TreeConfig, TreeStats};
 
@@ -20,12 +19,13 @@ use super::reference::Reference;
 use super::report::{FrameRecord, Setting, Summary, TreeFigures};
 use super::run::{Eye, Frame};
 use super::scenario::Scenario;
+use super::stage::SoftwareStage;
 
 /// One way of culling: a scene, an eye and a backend of its own.
 pub struct Lane {
     scene: Scene,
     eye: Eye,
-    queries: SoftwareQueries,
+    stage: SoftwareStage,
     records: Vec<FrameRecord>,
     /// The tree's counters after the first frame, which builds it.
     built: TreeStats,
@@ -40,11 +40,11 @@ pub struct Measured {
 }
 
 impl Lane {
-    /// A lane that has seen nothing yet.
+    /// A lane that has seen nothing yet, and draws as finely as the flags say.
     ///
     /// # Errors
     /// For a policy that draws what a reference found: there is nothing to compare.
-    pub fn new(policy: Box<dyn Policy>, tree: TreeConfig) -> anyhow::Result<Self> {
+    pub fn new(flags: &Flags, policy: Box<dyn Policy>, tree: TreeConfig) -> anyhow::Result<Self> {
         ensure!(
             policy.wants_recorded().is_none(),
             "the policy {} only draws what another one found; choose one that culls",
@@ -53,22 +53,19 @@ impl Lane {
         Ok(Self {
             scene: Scene::new(SceneConfig { tree, ..Default::default() }),
             eye: Culler::new(policy),
-            queries: SoftwareQueries::new(),
+            stage: SoftwareStage::new(flags.detail()?),
             records: Vec::new(),
             built: TreeStats::default(),
         })
     }
 
     /// Runs one frame, clocked as in the demos: sync, cull with its draws, adapt.
-    fn frame(&mut self, world: &World, view: &View, painter: &Painter) -> anyhow::Result<()> {
-        let Self { scene, eye, queries, .. } = self;
+    fn frame(&mut self, world: &World, view: &View) -> anyhow::Result<()> {
+        let Self { scene, eye, stage, .. } = self;
         let synced = scene.sync(world);
-        let mut triangles = 0;
-        let stats = eye.frame(scene, view, queries, |pass, objects| {
-            triangles += painter.draw(world, view, pass, objects);
-        })?;
+        let drawn = stage.frame(eye, scene, world, view)?;
         let adapted = scene.adapt([&mut *eye]);
-        let frame = Frame { scene, view, eye, queries, synced, stats, adapted, triangles };
+        let frame = Frame { scene, view, eye, synced, drawn, adapted };
         let record = frame.record(self.records.len() as u32);
         if self.records.is_empty() {
             self.built = self.scene.tree().stats();
@@ -93,8 +90,7 @@ pub fn run(
     mut lanes: Vec<Lane>,
     mut tick: impl FnMut(),
 ) -> anyhow::Result<Vec<Measured>> {
-    let painter = Painter { detail: flags.detail()? };
-    let mut reference = Reference::new(painter, flags.oracle);
+    let mut reference = Reference::new(Painter { detail: flags.detail()? }, flags.oracle);
     let mut order: Vec<usize> = (0..lanes.len()).collect();
     let mut dice = ChaCha8Rng::seed_from_u64(flags.seed);
     for frame in 0..flags.frames {
@@ -108,15 +104,15 @@ pub fn run(
         scenario.step();
         let view = scenario.view(frame, flags)?;
         for &lane in &order {
-            lanes[lane].frame(&scenario.world, &view, &painter)?;
+            lanes[lane].frame(&scenario.world, &view)?;
             tick();
         }
         if let Some(first) = lanes.first() {
             reference.compare(&first.scene, &scenario.world, &view)?;
         }
-        for Lane { eye, queries, records, .. } in &mut lanes {
+        for Lane { eye, records, .. } in &mut lanes {
             if let Some(record) = records.last_mut() {
-                reference.judge(eye, queries, record);
+                reference.judge(&scenario.world, &view, eye, record)?;
             }
         }
     }

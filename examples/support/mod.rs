@@ -1,11 +1,11 @@
-//! What the examples share: flags, measuring, plots and pictures. The bunny of some scenarios is
-//! read from a glTF file.
+//! What the examples share: scenarios, backends, flags, measuring, plots, pictures and a window.
 
 pub mod canvas;
 pub mod chart;
+pub mod demo;
 pub mod flags;
+pub mod headless;
 pub mod last_frame;
-#[cfg(feature = "gltf")]
 pub mod lockstep;
 pub mod markdown;
 pub mod painter;
@@ -15,7 +15,8 @@ pub mod program;
 pub mod reference;
 pub mod report;
 pub mod run;
-#[cfg(feature = "gltf")]
 pub mod scenario;
+pub mod stage;
 pub mod table;
 pub mod top_view;
+pub mod window;

@@ -6,6 +6,7 @@ use hecs::{Entity, World};
 use tercet::Culler;
 use tercet::geom::View;
 use tercet::policy::{Policy, Recording, StopAndWait};
+use tercet::query::QueryBackend;
 use tercet::query::oracle::{Oracle, Truth};
 use tercet::query::software::SoftwareQueries;
 use tercet::scene::{ObjectId, ObjectRef, Scene};
@@ -74,16 +75,29 @@ impl Reference {
         if self.compare { self.find_truth(scene, world, view) } else { Ok(()) }
     }
 
-    /// Fills the oracle's figures in, if every frame is compared. `eye` may have looked at another
-    /// scene of the same world: entities are compared.
-    pub fn judge(&self, eye: &Eye, queries: &SoftwareQueries, record: &mut FrameRecord) {
-        let (true, Some(truth)) = (self.compare, &self.truth) else { return };
+    /// Fills the oracle's figures in, if every frame is compared: what the culler drew is drawn once
+    /// more, in software, and compared with the truth. `eye` may have looked at another scene of the
+    /// same world: entities are compared.
+    pub fn judge(
+        &mut self,
+        world: &World,
+        view: &View,
+        eye: &Eye,
+        record: &mut FrameRecord,
+    ) -> anyhow::Result<()> {
+        let (true, Some(truth)) = (self.compare, &self.truth) else { return Ok(()) };
         let drawn: HashSet<Entity> = eye.visible().iter().map(|object| object.entity()).collect();
         let lost = self.seen.iter().filter(|entity| !drawn.contains(entity)).count();
+        self.queries.begin(view)?;
+        self.queries.draw(|pass| {
+            self.painter.draw(world, view, pass, eye.visible());
+        })?;
+        self.queries.end()?;
         record.exact_visible = Some(truth.exact.len() as u32);
         record.box_visible = Some(truth.box_visible.len() as u32);
         record.false_culls = Some(lost as u32);
-        record.wrong_pixels = Some(self.oracle.wrong_pixels(queries));
+        record.wrong_pixels = Some(self.oracle.wrong_pixels(&self.queries));
+        Ok(())
     }
 
     fn find_truth(&mut self, scene: &Scene, world: &World, view: &View) -> anyhow::Result<()> {

@@ -1,7 +1,5 @@
 //! A run: counts frames, shows how long it will take, measures, and writes everything at the end.
-//!
-//! Each example has its own loop, so that it reads as the engine is used; what surrounds the loop
-//! is here. None of it happens inside the times that are reported.
+//! None of it happens inside the times that are reported.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -9,17 +7,17 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use hecs::World;
 use indicatif::{ProgressBar, ProgressStyle};
+use tercet::Culler;
 use tercet::geom::{Frustum, View};
 use tercet::policy::Policy;
-use tercet::query::software::SoftwareQueries;
 use tercet::scene::{Scene, SyncReport};
 use tercet::tree::TreeStats;
-use tercet::{Culler, FrameStats};
 
 use super::flags::Flags;
 use super::painter::Painter;
 use super::reference::Reference;
 use super::report::{self, FrameRecord, Setting, Summary, TreeFigures};
+use super::stage::{Drawn, Stage};
 use super::{last_frame, plots, table, top_view};
 
 /// A culler whose policy was chosen by name.
@@ -34,7 +32,6 @@ pub struct Run {
     started: Instant,
     records: Vec<FrameRecord>,
     reference: Reference,
-    flight_end: f32,
     view: Option<View>,
     /// The tree's counters after the first frame, which builds it.
     tree_built: TreeStats,
@@ -48,22 +45,18 @@ pub struct Frame<'a> {
     pub view: &'a View,
     /// The culler that drew it.
     pub eye: &'a Eye,
-    /// The backend that it was drawn on.
-    pub queries: &'a SoftwareQueries,
     /// What [`Scene::sync`] returned.
     pub synced: SyncReport,
-    /// What [`Culler::frame`] returned.
-    pub stats: FrameStats,
+    /// What was done to draw it.
+    pub drawn: Drawn,
     /// What [`Scene::adapt`] returned.
     pub adapted: Duration,
-    /// Triangles that the closure drew.
-    pub triangles: u64,
 }
 
 impl Frame<'_> {
     /// Its figures, but for those of the oracle.
     pub fn record(&self, number: u32) -> FrameRecord {
-        let Frame { scene, view, synced, stats, .. } = self;
+        let Frame { scene, view, synced, drawn: Drawn { stats, triangles }, .. } = self;
         let ms = |time: Duration| report::round(time.as_secs_f64() * 1e3);
         let tree = synced.tree_time + self.adapted;
         let cull = stats.policy + stats.draw + stats.query + stats.wait;
@@ -79,7 +72,7 @@ impl Frame<'_> {
             query_ms: ms(stats.query),
             wait_ms: ms(stats.wait),
             drawn: stats.drawn,
-            drawn_triangles: self.triangles,
+            drawn_triangles: *triangles,
             in_frustum: scene.objects().filter(|o| inside(o.bounds)).count() as u32,
             queries: stats.queries,
             query_boxes: stats.query_boxes,
@@ -92,17 +85,22 @@ impl Frame<'_> {
 
 impl Run {
     /// Prepares to measure `flags.frames` frames of a world that has been spawned.
-    pub fn new(flags: &Flags, scene_name: &str, world: &World) -> anyhow::Result<Self> {
-        let setting = Setting::new(flags, scene_name, &flags.policy, world);
+    pub fn new(flags: &Flags, stage: &Stage, scene_name: &str, world: &World) -> anyhow::Result<Self> {
+        let setting = Setting {
+            backend: stage.backend().to_owned(),
+            adapter: stage.adapter(),
+            ..Setting::new(flags, scene_name, &flags.policy, world)
+        };
         // Now, not after a long run: where would its figures go?
         let out = flags.out();
         fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
         println!(
-            "{scene_name}: {} objects, {} triangles; policy {}, {} frames",
+            "{scene_name}: {} objects, {} triangles; policy {}, {} frames on {}",
             table::count(setting.objects as f64),
             table::count(setting.triangles as f64),
             flags.policy,
-            flags.frames
+            flags.frames,
+            setting.adapter.as_deref().unwrap_or("the CPU")
         );
         let painter = Painter { detail: flags.detail()? };
         let style = "{bar:40} frame {pos} of {len}, {elapsed} so far, {eta} left";
@@ -113,22 +111,16 @@ impl Run {
             started: Instant::now(),
             records: Vec::new(),
             reference: Reference::new(painter, flags.oracle),
-            flight_end: flags.flight_end()?,
             view: None,
             tree_built: TreeStats::default(),
             flags: flags.clone(),
         })
     }
 
-    /// The renderer that draws as finely as the flags say.
-    pub fn painter(&self) -> Painter {
-        self.painter
-    }
-
-    /// How far the camera's flight has got, 0 to 1; None when the run is over.
-    pub fn advance(&mut self) -> Option<f32> {
-        let (done, all) = (self.records.len() as u32, self.flags.frames);
-        (done < all).then(|| self.flight_end * done as f32 / (all - 1).max(1) as f32)
+    /// The next frame's number; None when the run is over.
+    pub fn advance(&mut self) -> Option<u32> {
+        let done = self.records.len() as u32;
+        (done < self.flags.frames).then_some(done)
     }
 
     /// Looks at the frame beside the one that is measured: for `--oracle`, and for policies that
@@ -138,15 +130,16 @@ impl Run {
     }
 
     /// Takes a frame's figures.
-    pub fn record(&mut self, frame: Frame<'_>) {
+    pub fn record(&mut self, world: &World, frame: Frame<'_>) -> anyhow::Result<()> {
         let mut record = frame.record(self.records.len() as u32);
-        self.reference.judge(frame.eye, frame.queries, &mut record);
+        self.reference.judge(world, frame.view, frame.eye, &mut record)?;
         if self.records.is_empty() {
             self.tree_built = frame.scene.tree().stats();
         }
         self.records.push(record);
         self.view = Some(frame.view.clone());
         self.bar.inc(1);
+        Ok(())
     }
 
     /// Writes figures, plots and pictures, and prints the table.

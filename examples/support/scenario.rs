@@ -1,8 +1,8 @@
-//! Worlds with a flight through them, for programs that run several.
+//! Worlds with a flight through them: what the demos fly through, and programs that compare.
 
 use hecs::World;
 use tercet::geom::View;
-use tercet::worlds::{self, CameraPath, Swarm, power_plant, teapots};
+use tercet::worlds::{self, CameraPath, Pose, Swarm, power_plant, teapots};
 
 use super::flags::Flags;
 
@@ -13,22 +13,46 @@ const NEAR: f32 = 0.1;
 pub struct Scenario {
     /// In words.
     pub name: String,
-    /// As the app has it.
+    /// The app's world: entities with a `Bounds` component, which the engine reads, and whatever
+    /// the app draws them from, here a `Drawable`.
     pub world: World,
     /// What moves, if anything does.
     pub swarm: Option<Swarm>,
     /// The camera's way.
-    pub flight: CameraPath,
+    pub flight: Flight,
+    /// Nothing is drawn that is nearer to the eye, metres.
+    pub near: f32,
+}
+
+/// The camera's way.
+pub enum Flight {
+    /// Smoothly through some points.
+    Path(CameraPath),
+    /// Frame by frame; never empty.
+    Poses(Vec<Pose>),
+}
+
+impl Flight {
+    /// Where the camera is, `t` from 0 to 1.
+    pub fn pose(&self, t: f32) -> Pose {
+        match self {
+            Self::Path(path) => path.pose(t),
+            Self::Poses(poses) => poses[(t * (poses.len() - 1) as f32).round() as usize],
+        }
+    }
 }
 
 impl Scenario {
     /// The power plant of [`worlds::power_plant()`] with `flags.objects` bunnies in it.
     pub fn power_plant(flags: &Flags, moving: bool) -> anyhow::Result<Self> {
         let mut scenario = Self::power_plant_alone(flags);
+        if flags.objects == 0 {
+            return Ok(scenario);
+        }
         let room = power_plant::interior(flags.scale);
         let bunnies = Swarm::new(flags.seed, flags.objects, worlds::bunny_mesh()?, room);
         bunnies.spawn(&mut scenario.world);
-        scenario.name = format!("power plant + {} {} bunnies", flags.objects, manner(moving));
+        scenario.name = format!("power plant + {}", several(flags.objects, moving, "bunny", "bunnies"));
         scenario.swarm = moving.then_some(bunnies);
         Ok(scenario)
     }
@@ -37,21 +61,21 @@ impl Scenario {
     pub fn power_plant_alone(flags: &Flags) -> Self {
         let mut world = World::new();
         worlds::power_plant(flags.seed, flags.scale).spawn(&mut world);
-        let flight = power_plant::path(flags.scale);
-        Self { name: "power plant alone".to_owned(), world, swarm: None, flight }
+        let flight = Flight::Path(power_plant::path(flags.scale));
+        Self { name: "power plant alone".to_owned(), world, swarm: None, flight, near: NEAR }
     }
 
-    /// The cloud of [`teapots`] with `flags.objects` of them.
-    pub fn teapots(flags: &Flags, moving: bool) -> Self {
-        let count = flags.objects;
+    /// A cloud of [`teapots`]. Its room grows with their number, not their density.
+    pub fn teapots(flags: &Flags, count: usize, moving: bool) -> Self {
         let cloud = Swarm::new(flags.seed, count, worlds::teapot_mesh(), teapots::room(count));
         let mut world = World::new();
         cloud.spawn(&mut world);
         Self {
-            name: format!("{count} {} teapots", manner(moving)),
+            name: several(count, moving, "teapot", "teapots"),
             world,
             swarm: moving.then_some(cloud),
-            flight: teapots::path(count),
+            flight: Flight::Path(teapots::path(count)),
+            near: NEAR,
         }
     }
 
@@ -66,10 +90,11 @@ impl Scenario {
     pub fn view(&self, frame: u32, flags: &Flags) -> anyhow::Result<View> {
         let t = flags.flight_end()? * frame as f32 / (flags.frames - 1).max(1) as f32;
         let pose = self.flight.pose(t);
-        Ok(View::look_at(pose.eye, pose.target, pose.fov_y_degrees, NEAR, flags.viewport())?)
+        Ok(View::look_at(pose.eye, pose.target, pose.fov_y_degrees, self.near, flags.viewport())?)
     }
 }
 
-fn manner(moving: bool) -> &'static str {
-    if moving { "moving" } else { "static" }
+/// "1 static teapot", "12 moving teapots".
+fn several(count: usize, moving: bool, one: &str, many: &str) -> String {
+    format!("{count} {} {}", if moving { "moving" } else { "static" }, if count == 1 { one } else { many })
 }

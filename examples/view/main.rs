@@ -15,13 +15,11 @@ use std::path::PathBuf;
 
 use anyhow::ensure;
 use clap::Args;
+use support::demo;
 use support::flags::Flags;
-use support::run::{Frame, Run};
-use tercet::Culler;
-use tercet::geom::{Aabb, View};
-use tercet::query::software::SoftwareQueries;
-use tercet::scene::{Scene, SceneConfig, import};
-use tercet::worlds::Pose;
+use support::scenario::{Flight, Scenario};
+use tercet::geom::Aabb;
+use tercet::scene::import;
 
 /// What the command line says beside the shared flags.
 #[derive(Args)]
@@ -46,50 +44,21 @@ fn main() -> anyhow::Result<()> {
     let model = &imported.model;
     ensure!(!model.objects.is_empty(), "{}: there is nothing to see in it", scenery.file.display());
 
-    let mut path: Vec<Pose> = match &scenery.camera {
-        Some(file) => camera_file::read(file)?,
+    let flight = match &scenery.camera {
+        Some(file) => Flight::Poses(camera_file::read(file)?),
         None => {
             let boxes: Vec<Aabb> = model.objects.iter().map(|o| o.bounds).collect();
-            let flight = walk::through(&model.bounds, &boxes);
-            let last = (flags.frames - 1).max(1) as f32;
-            (0..flags.frames).map(|n| flight.pose(n as f32 / last)).collect()
+            Flight::Path(walk::through(&model.bounds, &boxes))
         }
     };
-    let flown = flags.flight_end()? * path.len() as f32;
-    path.truncate((flown.ceil() as usize).max(1));
-    flags.frames = path.len() as u32;
-    let near = walk::near(&model.bounds);
-
+    if let Flight::Poses(poses) = &flight {
+        let flown = flags.flight_end()? * poses.len() as f32;
+        flags.frames = (flown.ceil() as u32).max(1);
+    }
+    let (name, near) = (model.name.clone(), walk::near(&model.bounds));
     let mut world = hecs::World::new();
     imported.spawn(&mut world);
-    let mut scene = Scene::new(SceneConfig { tree: flags.tree()?, ..Default::default() });
-    let mut eye = Culler::new(flags.policy()?);
-    let mut queries = SoftwareQueries::new();
-
-    let mut run = Run::new(&flags, &model.name, &world)?;
-    let painter = run.painter();
-    for pose in path {
-        let view = View::look_at(pose.eye, pose.target, pose.fov_y_degrees, near, flags.viewport())?;
-        let synced = scene.sync(&world);
-        run.look(&scene, &world, &view, &mut eye)?;
-        let mut triangles = 0;
-        let stats = eye.frame(&scene, &view, &mut queries, |pass, objects| {
-            triangles += painter.draw(&world, &view, pass, objects);
-        })?;
-        let adapted = scene.adapt([&mut eye]);
-        run.record(Frame {
-            scene: &scene,
-            view: &view,
-            eye: &eye,
-            queries: &queries,
-            synced,
-            stats,
-            adapted,
-            triangles,
-        });
-    }
-    run.finish(&scene, &world, &eye)?;
-    Ok(())
+    demo::run(&flags, Scenario { name, world, swarm: None, flight, near })
 }
 
 /// A file says nothing of levels of detail: they are made here, unless nobody wants them.

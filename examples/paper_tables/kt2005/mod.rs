@@ -67,7 +67,10 @@ fn lanes(flags: &Flags) -> anyhow::Result<Vec<Lane>> {
     let tree = flags.tree()?;
     let mut binary = tree.clone();
     binary.straddlers = Straddlers::StayInParent;
-    Ok(vec![Lane::new(flags.policy()?, tree)?, Lane::new(Box::new(Statistical::default()), binary)?])
+    Ok(vec![
+        Lane::new(flags, flags.policy()?, tree)?,
+        Lane::new(flags, Box::new(Statistical::default()), binary)?,
+    ])
 }
 
 fn both(measured: Vec<Measured>) -> anyhow::Result<[Measured; 2]> {

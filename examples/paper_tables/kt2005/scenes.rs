@@ -53,12 +53,12 @@ pub const SCENES: [Scene; 5] = [
         old: published(249.0, 656.0, 25.0),
     },
     Scene {
-        build: |flags| Ok(Scenario::teapots(flags, true)),
+        build: |flags| Ok(Scenario::teapots(flags, flags.objects, true)),
         new: published(27.0, 2289.0, 59.0),
         old: published(29.0, 2474.0, 38.0),
     },
     Scene {
-        build: |flags| Ok(Scenario::teapots(flags, false)),
+        build: |flags| Ok(Scenario::teapots(flags, flags.objects, false)),
         new: published(22.0, 1884.0, 96.0),
         old: published(24.0, 2135.0, 47.0),
     },

@@ -1,0 +1,61 @@
+//! A graphics adapter with a device: what an app has anyway, long before it asks what is hidden.
+
+use anyhow::Context;
+use tercet::query::gpu::{GpuQueries, wgpu};
+use wgpu::{Adapter, AdapterInfo, Backends, Device, DeviceDescriptor, DeviceType, Instance, Queue};
+
+/// A device, and what it runs on.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// Makes buffers, textures and pipelines.
+    pub device: Device,
+    /// Takes work.
+    pub queue: Queue,
+    info: AdapterInfo,
+}
+
+impl Gpu {
+    /// The most powerful adapter that there is, among those that `WGPU_BACKEND` allows; None
+    /// without any.
+    ///
+    /// # Errors
+    /// When it has no device to give.
+    pub fn open() -> anyhow::Result<Option<Self>> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = Backends::from_env().unwrap_or(Backends::PRIMARY | Backends::GL);
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let instance = Instance::new(descriptor);
+        let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else { return Ok(None) };
+        let request = adapter.request_device(&Self::descriptor(&adapter));
+        let (device, queue) = pollster::block_on(request)
+            .with_context(|| format!("the graphics adapter {} cannot be used", adapter.get_info().name))?;
+        Ok(Some(Self::new(&adapter, device, queue)))
+    }
+
+    /// The device of somebody else.
+    pub fn new(adapter: &Adapter, device: Device, queue: Queue) -> Self {
+        Self { device, queue, info: adapter.get_info() }
+    }
+
+    /// What a device is asked for: everything optional that the engine can use, and no more.
+    pub fn descriptor(adapter: &Adapter) -> DeviceDescriptor<'static> {
+        DeviceDescriptor {
+            required_features: GpuQueries::wanted_features(adapter),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        }
+    }
+
+    /// The adapter in words.
+    pub fn adapter(&self) -> String {
+        format!("{} ({})", self.info.name, self.info.backend)
+    }
+
+    /// Whether it is more than a CPU that plays the GPU's part.
+    pub fn is_hardware(&self) -> bool {
+        self.info.device_type != DeviceType::Cpu
+    }
+}

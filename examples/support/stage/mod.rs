@@ -1,0 +1,113 @@
+//! What answers and draws: a backend, and the renderer that goes with it.
+
+mod gpu;
+mod software;
+mod watched;
+mod wgpu;
+
+pub use gpu::Gpu;
+pub use software::SoftwareStage;
+pub use watched::{Asked, Watched};
+pub use wgpu::{Picture, WgpuStage};
+
+use anyhow::Context;
+use hecs::World;
+use tercet::FrameStats;
+use tercet::draw::Detail;
+use tercet::geom::View;
+use tercet::scene::Scene;
+
+use super::flags::{Backend, Flags};
+use super::run::Eye;
+
+/// One of the backends, chosen at run time.
+pub enum Stage {
+    /// The CPU.
+    Software(SoftwareStage),
+    /// The GPU.
+    Wgpu(Box<WgpuStage>),
+}
+
+/// What was done for a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Drawn {
+    /// What [`Culler::frame`](tercet::Culler::frame) returned.
+    pub stats: FrameStats,
+    /// Triangles that the closure drew.
+    pub triangles: u64,
+}
+
+impl Stage {
+    /// The backend that `--backend` names.
+    ///
+    /// # Errors
+    /// When there is no adapter and one is asked for, or it cannot be used.
+    pub fn new(flags: &Flags) -> anyhow::Result<Self> {
+        let detail = flags.detail()?;
+        let software = || Ok(Self::Software(SoftwareStage::new(detail)));
+        match flags.backend {
+            Backend::Software => software(),
+            Backend::Wgpu => {
+                let gpu = Gpu::open()?.context(
+                    "--backend wgpu: no graphics adapter was found; install a Vulkan or OpenGL driver \
+                     (Mesa's lavapipe is one that needs no GPU), or use --backend software",
+                )?;
+                Self::on(gpu, detail)
+            }
+            Backend::Auto => match Gpu::open()? {
+                Some(gpu) if gpu.is_hardware() => Self::on(gpu, detail),
+                _ => software(),
+            },
+        }
+    }
+
+    fn on(gpu: Gpu, detail: Detail) -> anyhow::Result<Self> {
+        Ok(Self::Wgpu(Box::new(WgpuStage::new(gpu, detail)?)))
+    }
+
+    /// As `summary.json` calls it.
+    pub fn backend(&self) -> &'static str {
+        match self {
+            Self::Software(_) => "software",
+            Self::Wgpu(_) => "wgpu",
+        }
+    }
+
+    /// The graphics adapter, where there is one.
+    pub fn adapter(&self) -> Option<String> {
+        match self {
+            Self::Software(_) => None,
+            Self::Wgpu(stage) => Some(stage.gpu().adapter()),
+        }
+    }
+
+    /// Whether the questions of the next frames are kept, to be shown.
+    pub fn keep_questions(&mut self, keep: bool) {
+        match self {
+            Self::Software(stage) => stage.queries.keep(keep),
+            Self::Wgpu(stage) => stage.queries.keep(keep),
+        }
+    }
+
+    /// The questions of the last frame, if they were kept.
+    pub fn asked(&self) -> &[Asked] {
+        match self {
+            Self::Software(stage) => stage.queries.asked(),
+            Self::Wgpu(stage) => stage.queries.asked(),
+        }
+    }
+
+    /// Draws a frame without what is hidden.
+    pub fn frame(
+        &mut self,
+        eye: &mut Eye,
+        scene: &Scene,
+        world: &World,
+        view: &View,
+    ) -> anyhow::Result<Drawn> {
+        match self {
+            Self::Software(stage) => stage.frame(eye, scene, world, view),
+            Self::Wgpu(stage) => stage.frame(eye, scene, world, view),
+        }
+    }
+}

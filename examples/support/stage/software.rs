@@ -1,0 +1,39 @@
+//! The CPU answers, and draws what the questions are put to: depth.
+
+use hecs::World;
+use tercet::draw::Detail;
+use tercet::geom::View;
+use tercet::query::software::SoftwareQueries;
+use tercet::scene::Scene;
+
+use super::{Drawn, Watched};
+use crate::support::painter::Painter;
+use crate::support::run::Eye;
+
+/// The software backend, with the renderer for its passes.
+pub struct SoftwareStage {
+    pub(super) queries: Watched<SoftwareQueries>,
+    painter: Painter,
+}
+
+impl SoftwareStage {
+    /// Draws as finely as `detail` says.
+    pub fn new(detail: Detail) -> Self {
+        Self { queries: Watched::new(SoftwareQueries::new()), painter: Painter { detail } }
+    }
+
+    /// See [`Stage::frame`](super::Stage::frame).
+    pub fn frame(
+        &mut self,
+        eye: &mut Eye,
+        scene: &Scene,
+        world: &World,
+        view: &View,
+    ) -> anyhow::Result<Drawn> {
+        let mut triangles = 0;
+        let stats = eye.frame(scene, view, &mut self.queries, |pass, objects| {
+            triangles += self.painter.draw(world, view, pass, objects);
+        })?;
+        Ok(Drawn { stats, triangles })
+    }
+}

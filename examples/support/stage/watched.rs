@@ -1,0 +1,102 @@
+//! A backend that keeps what it was asked, to be looked at.
+
+use tercet::Error;
+use tercet::geom::{Proxy, View};
+use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
+
+/// A backend, and the questions of its last frame if anybody wants them.
+pub struct Watched<B> {
+    backend: B,
+    log: Option<QuestionLog>,
+}
+
+/// The questions of a frame.
+#[derive(Default)]
+struct QuestionLog {
+    asked: Vec<Asked>,
+    /// By ticket: whose the boxes are in `asked`.
+    ranges: Vec<(usize, usize)>,
+}
+
+/// A box that was asked about.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// What the question rasterised.
+    pub proxy: Proxy,
+    /// What came back; None if nothing did.
+    pub visible: Option<bool>,
+}
+
+impl<B> Watched<B> {
+    /// Keeps nothing, until it is told to.
+    pub fn new(backend: B) -> Self {
+        Self { backend, log: None }
+    }
+
+    /// The backend itself.
+    pub fn backend(&mut self) -> &mut B {
+        &mut self.backend
+    }
+
+    /// Whether the questions of the next frames are kept.
+    pub fn keep(&mut self, keep: bool) {
+        match keep {
+            true => self.log.get_or_insert_default(),
+            false => return self.log = None,
+        };
+    }
+
+    /// The questions of the last frame, if they were kept.
+    pub fn asked(&self) -> &[Asked] {
+        self.log.as_ref().map_or(&[], |log| &log.asked)
+    }
+}
+
+impl<B: QueryBackend> QueryBackend for Watched<B> {
+    type Pass = B::Pass;
+
+    fn name(&self) -> &'static str {
+        self.backend.name()
+    }
+
+    fn can_block(&self) -> bool {
+        self.backend.can_block()
+    }
+
+    fn begin(&mut self, view: &View) -> Result<(), Error> {
+        if let Some(log) = &mut self.log {
+            log.asked.clear();
+            log.ranges.clear();
+        }
+        self.backend.begin(view)
+    }
+
+    fn draw(&mut self, record: impl FnOnce(&mut B::Pass)) -> Result<(), Error> {
+        self.backend.draw(record)
+    }
+
+    fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
+        if let Some(log) = &mut self.log {
+            // The driver numbers a frame's questions from 0.
+            let start = log.asked.len();
+            log.asked.extend(boxes.iter().map(|proxy| Asked { proxy: proxy.clone(), visible: None }));
+            log.ranges.push((start, log.asked.len()));
+        }
+        self.backend.ask(ticket, boxes, want)
+    }
+
+    fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
+        let log = &mut self.log;
+        self.backend.answers(wait, |ticket, answer| {
+            if let Some(log) = log {
+                let (start, end) = log.ranges[ticket.0 as usize];
+                log.asked[start..end].iter_mut().for_each(|asked| asked.visible = Some(answer.is_visible(0)));
+            }
+            deliver(ticket, answer);
+        })
+    }
+
+    fn end(&mut self) -> Result<(), Error> {
+        self.backend.end()
+    }
+}

@@ -1,0 +1,152 @@
+//! The GPU answers, and draws the finished picture while it does.
+
+use std::time::Instant;
+
+use hecs::World;
+use tercet::draw::{Detail, Renderer, Shading};
+use tercet::geom::{View, Viewport};
+use tercet::query::gpu::{FrameTargets, GpuQueries, wgpu};
+use tercet::scene::Scene;
+use wgpu::{TextureFormat, TextureUsages, TextureView};
+
+use super::{Drawn, Gpu, Watched};
+use crate::support::run::Eye;
+
+/// The sky, as sRGB shows it.
+const SKY: wgpu::Color = wgpu::Color { r: 0.74, g: 0.82, b: 0.91, a: 1.0 };
+
+/// The wgpu backend, with a renderer and what both draw into.
+pub struct WgpuStage {
+    gpu: Gpu,
+    pub(super) queries: Watched<GpuQueries>,
+    renderer: Renderer,
+    picture: Picture,
+    detail: Detail,
+}
+
+/// Attachments that are also read: colour by a window, depth by questions.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// What is seen.
+    pub color: TextureView,
+    /// What is asked.
+    pub depth: TextureView,
+    size: (u32, u32),
+}
+
+impl Picture {
+    /// The format of its colours, which hold what sRGB shows: windows take them as they are.
+    pub const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
+
+    /// A picture of a viewport's size.
+    pub fn new(gpu: &Gpu, viewport: Viewport) -> Self {
+        let texture = |format, usage: TextureUsages| {
+            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("picture"),
+                size: wgpu::Extent3d {
+                    width: viewport.width,
+                    height: viewport.height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage | TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        Self {
+            color: texture(Self::COLOR, TextureUsages::COPY_SRC),
+            depth: texture(TextureFormat::Depth32Float, TextureUsages::empty()),
+            size: (viewport.width, viewport.height),
+        }
+    }
+
+    /// Whether it has a viewport's size.
+    pub fn fits(&self, viewport: Viewport) -> bool {
+        self.size == (viewport.width, viewport.height)
+    }
+
+    /// A pass on it, on top of what is there or on a new sky; on black for `dark`.
+    pub fn pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        clear: bool,
+        dark: bool,
+    ) -> wgpu::RenderPass<'static> {
+        let sky = if dark { wgpu::Color::BLACK } else { SKY };
+        let color = if clear { wgpu::LoadOp::Clear(sky) } else { wgpu::LoadOp::Load };
+        let depth = if clear { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
+        let descriptor = wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.color,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: color, store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(wgpu::Operations { load: depth, store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        };
+        encoder.begin_render_pass(&descriptor).forget_lifetime()
+    }
+
+    /// As the engine takes it: cleared by each frame.
+    pub fn targets(&self) -> FrameTargets {
+        FrameTargets::new(self.depth.clone()).with_color(self.color.clone(), wgpu::LoadOp::Clear(SKY))
+    }
+}
+
+impl WgpuStage {
+    /// Draws as finely as `detail` says.
+    pub fn new(gpu: Gpu, detail: Detail) -> anyhow::Result<Self> {
+        Ok(Self {
+            queries: Watched::new(GpuQueries::new(&gpu.device, &gpu.queue)?),
+            renderer: Renderer::new(&gpu.device, &gpu.queue, Some(Picture::COLOR))?,
+            picture: Picture::new(&gpu, Viewport::new(1, 1)),
+            gpu,
+            detail,
+        })
+    }
+
+    /// What it runs on.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// What was drawn last.
+    pub fn picture(&self) -> &Picture {
+        &self.picture
+    }
+
+    /// See [`Stage::frame`](super::Stage::frame). It returns when the GPU has finished: a time that
+    /// leaves out what is still to be done would say nothing.
+    pub fn frame(
+        &mut self,
+        eye: &mut Eye,
+        scene: &Scene,
+        world: &World,
+        view: &View,
+    ) -> anyhow::Result<Drawn> {
+        if !self.picture.fits(view.viewport()) {
+            self.picture = Picture::new(&self.gpu, view.viewport());
+            self.queries.backend().target(&self.picture.targets());
+        }
+        let Self { queries, renderer, .. } = self;
+        renderer.begin(view, self.detail, Shading::Lit);
+        let mut triangles = 0;
+        let mut stats = eye.frame(scene, view, queries, |pass, objects| {
+            triangles += renderer.draw(pass, world, objects).triangles;
+        })?;
+        let start = Instant::now();
+        self.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        stats.wait += start.elapsed();
+        Ok(Drawn { stats, triangles })
+    }
+}

@@ -1,0 +1,164 @@
+//! The engine behind the window: everything that a frame needs, and what the user may change.
+
+use std::collections::VecDeque;
+
+use tercet::Culler;
+use tercet::draw::Detail;
+use tercet::geom::{Aabb, View, Viewport};
+use tercet::policy;
+use tercet::scene::{Scene, SceneConfig};
+use tercet::tree::TreeConfig;
+use tercet::worlds::Pose;
+
+use crate::support::flags::{Backend, Flags};
+use crate::support::painter::Painter;
+use crate::support::reference::Reference;
+use crate::support::report::FrameRecord;
+use crate::support::run::{Eye, Frame};
+use crate::support::scenario::Scenario;
+use crate::support::stage::{Gpu, SoftwareStage, Stage, WgpuStage};
+
+/// Frames that the plots go back.
+const REMEMBERED: usize = 300;
+
+/// A scene with one eye on it.
+pub struct Engine {
+    /// The app's world.
+    pub scenario: Scenario,
+    /// What is where.
+    pub scene: Scene,
+    /// What the culling camera sees.
+    pub eye: Eye,
+    /// The backend in use.
+    pub stage: Stage,
+    /// How finely things are drawn.
+    pub detail: Detail,
+    /// The dials of the tree, as the scene was made with.
+    pub tree: TreeConfig,
+    /// The last frames, oldest first.
+    pub records: VecDeque<FrameRecord>,
+    /// The view that was culled for in the last frame.
+    pub culled: Option<View>,
+    /// Where the culling camera was left, while the user flies on without it.
+    pub frozen: Option<Pose>,
+    /// Whether the world stands still.
+    pub paused: bool,
+    /// By slot: where objects were in the frame before.
+    places: Vec<Option<Aabb>>,
+    reference: Reference,
+    gpu: Gpu,
+    frames: u32,
+}
+
+impl Engine {
+    /// A scenario on the backend that the flags name; the window's own device is there anyway.
+    pub fn new(flags: &Flags, scenario: Scenario, gpu: Gpu) -> anyhow::Result<Self> {
+        let (detail, tree) = (flags.detail()?, flags.tree()?);
+        let on_gpu = match flags.backend {
+            Backend::Auto => gpu.is_hardware(),
+            named => named == Backend::Wgpu,
+        };
+        let mut engine = Self {
+            scene: Scene::new(SceneConfig { tree: tree.clone(), ..Default::default() }),
+            eye: Culler::new(flags.policy()?),
+            stage: Stage::Software(SoftwareStage::new(detail)),
+            reference: Reference::new(Painter { detail }, false),
+            records: VecDeque::with_capacity(REMEMBERED),
+            culled: None,
+            frozen: None,
+            paused: false,
+            places: Vec::new(),
+            frames: 0,
+            scenario,
+            detail,
+            tree,
+            gpu,
+        };
+        if on_gpu {
+            engine.use_gpu(true)?;
+        }
+        Ok(engine)
+    }
+
+    /// Changes the backend. What was learnt about the scene stays: it is the culler's.
+    pub fn use_gpu(&mut self, on_gpu: bool) -> anyhow::Result<()> {
+        self.stage = match on_gpu {
+            true => Stage::Wgpu(Box::new(WgpuStage::new(self.gpu.clone(), self.detail)?)),
+            false => Stage::Software(SoftwareStage::new(self.detail)),
+        };
+        Ok(())
+    }
+
+    /// Culls with another policy, which has seen nothing yet.
+    pub fn use_policy(&mut self, name: &str) -> anyhow::Result<()> {
+        self.eye = Culler::new(policy::by_name(name)?);
+        Ok(())
+    }
+
+    /// Builds the tree anew, with other dials.
+    pub fn use_tree(&mut self, tree: TreeConfig) {
+        self.scene = Scene::new(SceneConfig { tree: tree.clone(), ..Default::default() });
+        self.tree = tree;
+        self.places.clear();
+    }
+
+    /// Draws everything as finely as this from now on.
+    pub fn use_detail(&mut self, detail: Detail) -> anyhow::Result<()> {
+        self.detail = detail;
+        self.reference = Reference::new(Painter { detail }, false);
+        self.use_gpu(matches!(self.stage, Stage::Wgpu(_)))
+    }
+
+    /// Leaves the culling camera where it is, or lets it go with the user's again.
+    pub fn freeze(&mut self, at: Pose) {
+        self.frozen = if self.frozen.is_some() { None } else { Some(at) };
+    }
+
+    /// The view of a pose.
+    pub fn view(&self, pose: Pose, viewport: Viewport) -> anyhow::Result<View> {
+        Ok(View::look_at(pose.eye, pose.target, pose.fov_y_degrees, self.scenario.near, viewport)?)
+    }
+
+    /// One frame: the world moves on, and is culled for the camera, or for where it was frozen.
+    pub fn frame(&mut self, camera: Pose, viewport: Viewport) -> anyhow::Result<()> {
+        if !self.paused {
+            self.scenario.step();
+        }
+        let view = self.view(self.frozen.unwrap_or(camera), viewport)?;
+        let Self { scene, eye, stage, scenario, .. } = self;
+        self.places.clear();
+        self.places.resize(scene.slot_bound(), None);
+        scene.objects().for_each(|o| self.places[o.object.id.slot()] = o.bounds);
+        let synced = scene.sync(&scenario.world);
+        self.reference.look(scene, &scenario.world, &view, eye)?;
+        let drawn = stage.frame(eye, scene, &scenario.world, &view)?;
+        let adapted = scene.adapt([&mut *eye]);
+        let frame = Frame { scene, view: &view, eye, synced, drawn, adapted };
+        if self.records.len() == REMEMBERED {
+            self.records.pop_front();
+        }
+        self.records.push_back(frame.record(self.frames));
+        self.frames = self.frames.wrapping_add(1);
+        self.culled = Some(view);
+        Ok(())
+    }
+
+    /// The boxes of what moved in the last frame.
+    pub fn moved(&self) -> impl Iterator<Item = Aabb> {
+        let place = |slot: usize| self.places.get(slot).copied().flatten();
+        self.scene.objects().filter_map(move |o| {
+            let bounds = o.bounds?;
+            place(o.object.id.slot()).is_some_and(|before| before != bounds).then_some(bounds)
+        })
+    }
+
+    /// Everything that has a place.
+    pub fn bounds(&self) -> Aabb {
+        self.scene.objects().filter_map(|o| o.bounds).fold(Aabb::EMPTY, |all, b| all.union(&b))
+    }
+
+    /// The device that the window draws with.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+}

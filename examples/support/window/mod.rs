@@ -1,0 +1,84 @@
+//! The demos' window: fly about, change everything while it runs, and see what the engine does.
+//!
+//! | file | |
+//! |---|---|
+//! | `app` | one frame of the window: input, engine, picture, panels |
+//! | `engine` | the scene, the eye and the backend |
+//! | `fly` | the camera |
+//! | `display` | what is drawn over and instead of the engine's own picture |
+//! | `frozen` | the culling camera's frustum, seen from elsewhere |
+//! | `states` | nodes and objects by what became of them |
+//! | `pick` | what is under the cursor, and why it is drawn or not |
+//! | `panel`, `dials`, `plots` | controls and curves |
+//! | `screenshot` | the window as a PNG |
+
+mod app;
+mod dials;
+mod display;
+mod engine;
+mod fly;
+mod frozen;
+mod panel;
+mod pick;
+mod plots;
+mod screenshot;
+mod states;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use anyhow::{Context, anyhow};
+use eframe::egui::ViewportBuilder;
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+
+use super::flags::Flags;
+use super::scenario::Scenario;
+use super::stage::Gpu;
+use app::App;
+
+/// A window that could not be opened.
+pub struct NotShown {
+    /// Why.
+    pub why: anyhow::Error,
+    /// What was to be shown.
+    pub scenario: Scenario,
+}
+
+/// Points beside and below the picture for controls and plots.
+const PANELS: (f32, f32) = (300.0, 190.0);
+
+/// Shows a scenario in a window until it is closed.
+///
+/// # Errors
+/// When no window can be opened, with the scenario, to run it without one.
+pub fn show(flags: &Flags, scenario: Scenario) -> Result<(), NotShown> {
+    let size = [flags.size.0 as f32 + PANELS.0, flags.size.1 as f32 + PANELS.1];
+    let setup = WgpuSetupCreateNew {
+        device_descriptor: Arc::new(Gpu::descriptor),
+        ..WgpuSetupCreateNew::without_display_handle()
+    };
+    let options = eframe::NativeOptions {
+        viewport: ViewportBuilder::default().with_inner_size(size).with_title(scenario.name.clone()),
+        wgpu_options: WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..Default::default() },
+        ..Default::default()
+    };
+    // The window takes the scenario when it is there; until then it can be had back.
+    let waiting = Rc::new(RefCell::new(Some(scenario)));
+    let taken = waiting.clone();
+    let created = Box::new(move |cx: &eframe::CreationContext<'_>| {
+        let state = cx.wgpu_render_state.as_ref().context("it has no wgpu device")?;
+        let gpu = Gpu::new(&state.adapter, state.device.clone(), state.queue.clone());
+        let scenario = taken.borrow_mut().take().context("it was opened twice")?;
+        Ok(Box::new(App::new(flags, scenario, gpu)?) as Box<dyn eframe::App>)
+    });
+    let result = eframe::run_native(flags.example, options, created);
+    match (result, waiting.take()) {
+        (Err(error), Some(scenario)) => Err(NotShown { why: anyhow!("{error}"), scenario }),
+        (Err(error), None) => {
+            eprintln!("The window was closed: {error}");
+            Ok(())
+        }
+        (Ok(()), _) => Ok(()),
+    }
+}

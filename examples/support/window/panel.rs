@@ -1,0 +1,150 @@
+//! The controls beside the picture.
+
+use eframe::egui::{CollapsingHeader, Color32, DragValue, RichText, ScrollArea, Ui};
+use tercet::draw::Detail;
+use tercet::policy;
+
+use super::display::Layers;
+use super::engine::Engine;
+use super::fly::Fly;
+use super::{dials, states};
+use crate::support::stage::Stage;
+use crate::support::table::count;
+
+const KEYS: &str = "W A S D, Q E: fly · Shift: faster · wheel: speed
+drag: look · P: follow the flight · Space: pause
+F: freeze the culling camera · F12: screenshot";
+
+/// Shows the controls and does what they say.
+///
+/// # Errors
+/// What a control was set to and cannot be: nothing has changed then.
+pub fn show(ui: &mut Ui, engine: &mut Engine, fly: &mut Fly, layers: &mut Layers) -> anyhow::Result<()> {
+    ScrollArea::vertical()
+        .show(ui, |ui| {
+            figures(ui, engine);
+            ui.separator();
+            backend(ui, engine)?;
+            policy(ui, engine)?;
+            ui.separator();
+            camera(ui, engine, fly);
+            view(ui, layers);
+            ui.separator();
+            all_dials(ui, engine)?;
+            CollapsingHeader::new("Keys").show(ui, |ui| ui.small(KEYS));
+            Ok(())
+        })
+        .inner
+}
+
+fn figures(ui: &mut Ui, engine: &Engine) {
+    ui.heading(&engine.scenario.name);
+    let Some(last) = engine.records.back() else { return };
+    ui.label(format!(
+        "{} of {} objects drawn, {} in the frustum",
+        count(last.drawn.into()),
+        count(engine.scene.len() as f64),
+        count(last.in_frustum.into())
+    ));
+    ui.label(format!("{} triangles", count(last.drawn_triangles as f64)));
+    ui.label(format!("{:.1} ms; {} questions in {} waves", last.frame_ms, last.queries, last.waves));
+    let tree = engine.scene.tree().stats();
+    ui.label(format!("tree: {} nodes, {} deep", count(tree.nodes as f64), tree.depth));
+}
+
+fn backend(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
+    let was = matches!(engine.stage, Stage::Wgpu(_));
+    let mut is = was;
+    ui.horizontal(|ui| {
+        ui.label("Backend");
+        ui.radio_value(&mut is, false, "software");
+        ui.radio_value(&mut is, true, "wgpu").on_hover_text(engine.gpu().adapter());
+    });
+    if is != was { engine.use_gpu(is) } else { Ok(()) }
+}
+
+fn policy(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
+    let was = engine.eye.policy().name();
+    let is = ui.horizontal(|ui| {
+        ui.label("Policy");
+        dials::choice(ui, ("policy", "name"), was, policy::NAMES)
+    });
+    if is.inner != was { engine.use_policy(&is.inner) } else { Ok(()) }
+}
+
+fn camera(ui: &mut Ui, engine: &mut Engine, fly: &mut Fly) {
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut fly.follows, "follow the flight (P)");
+        ui.checkbox(&mut engine.paused, "pause (Space)");
+    });
+    let mut frozen = engine.frozen.is_some();
+    if ui.checkbox(&mut frozen, "freeze the culling camera (F), and fly away from it").changed() {
+        engine.freeze(fly.pose());
+        fly.follows &= !frozen;
+    }
+    ui.horizontal(|ui| {
+        ui.label("speed");
+        ui.add(DragValue::new(&mut fly.speed).speed(0.1).range(1e-4..=1e6).suffix(" m/s"));
+    });
+}
+
+fn view(ui: &mut Ui, layers: &mut Layers) {
+    let Layers { overdraw, everything, nodes, culled, awake, proxies } = layers;
+    ui.checkbox(overdraw, "overdraw: how often each pixel is drawn");
+    ui.checkbox(everything, "draw everything, to compare");
+    ui.checkbox(nodes, "boxes of nodes");
+    ui.checkbox(culled, "boxes of objects culled in the frustum");
+    ui.checkbox(awake, "boxes of objects that are awake");
+    ui.checkbox(proxies, "proxies: what the questions rasterise");
+    CollapsingHeader::new("What the colours mean").show(ui, states::legend);
+}
+
+fn all_dials(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
+    let heading = |text| CollapsingHeader::new(RichText::new(text).strong()).default_open(true);
+    let mut result = Ok(());
+    let known = engine.eye.policy().dials();
+    if !known.is_empty() {
+        heading("Dials of the policy").show(ui, |ui| {
+            for (key, value) in dials::show(ui, engine.eye.policy().name(), &known) {
+                result = engine.eye.policy_mut().set(key, &value).map_err(Into::into);
+            }
+        });
+    }
+    heading("Dials of the tree").show(ui, |ui| {
+        let mut tree = engine.tree.clone();
+        let mut turned = dials::show(ui, "tree", &tree.dials());
+        ui.horizontal(|ui| {
+            for preset in ["stable", "paper"] {
+                if ui.button(format!("preset {preset}")).clicked() {
+                    turned.push(("preset", preset.to_owned()));
+                }
+            }
+        });
+        for (key, value) in turned {
+            match tree.set(key, &value) {
+                Ok(()) => engine.use_tree(tree.clone()),
+                Err(error) => result = Err(error.into()),
+            }
+        }
+    });
+    heading("Detail").show(ui, |ui| {
+        let mut error = engine.detail.max_error_px;
+        ui.horizontal(|ui| {
+            ui.label("max_error_px")
+                .on_hover_text("how far a coarser mesh may lie from the true one, pixels");
+            if ui.add(DragValue::new(&mut error).speed(0.02).range(0.0..=100.0)).changed() {
+                result = engine.use_detail(Detail { max_error_px: error });
+            }
+        });
+    });
+    result
+}
+
+/// Why each object under the cursor is drawn or not.
+pub fn why(ui: &mut Ui, lines: &[(bool, String)]) {
+    ui.strong("Under the cursor, nearest first");
+    for (is_drawn, line) in lines {
+        let color = if *is_drawn { Color32::LIGHT_GREEN } else { Color32::LIGHT_RED };
+        ui.colored_label(color, line);
+    }
+}
