@@ -1,7 +1,11 @@
-//! What the app sees: drawable things and how finely they are drawn.
+//! What the app sees: drawable things, how finely they are drawn, and a renderer for them.
 
 mod detail;
 mod drawable;
+#[cfg(feature = "gpu")]
+pub mod renderer;
 
 pub use detail::Detail;
 pub use drawable::Drawable;
+#[cfg(feature = "gpu")]
+pub use renderer::{Drawn, Lines, Renderer, RendererStats, Shading};

@@ -5,6 +5,7 @@
 
 mod aabb;
 mod frustum;
+mod outline;
 mod project;
 mod proxy;
 mod silhouette;
@@ -13,6 +14,7 @@ mod view;
 
 pub use aabb::Aabb;
 pub use frustum::{Frustum, PlaneMask};
+pub use outline::ScreenOutline;
 pub use project::{Projected, ScreenRect, project};
 pub use proxy::{PixelRect, Proxy, Question};
 pub(crate) use support::Support;

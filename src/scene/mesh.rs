@@ -1,5 +1,6 @@
 //! Triangle meshes and their levels of detail.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Vec3};
@@ -22,8 +23,13 @@ pub struct Level {
 #[derive(Clone, Debug)]
 pub struct Mesh(Arc<MeshData>);
 
+/// Which mesh a handle points to. Clones share it; no other mesh of the process ever has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MeshId(u64);
+
 #[derive(Debug)]
 struct MeshData {
+    id: MeshId,
     name: String,
     levels: Vec<Level>,
     bounds: Aabb,
@@ -66,7 +72,14 @@ impl Mesh {
             }
             bounds = bounds.union(&Aabb::from_points(level.positions.iter().copied()));
         }
-        Ok(Self(Arc::new(MeshData { name, levels, bounds, support: OnceLock::new() })))
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        let id = MeshId(NEXT.fetch_add(1, Ordering::Relaxed));
+        Ok(Self(Arc::new(MeshData { id, name, levels, bounds, support: OnceLock::new() })))
+    }
+
+    /// Which mesh this is: what a renderer keeps its buffers by.
+    pub fn id(&self) -> MeshId {
+        self.0.id
     }
 
     /// The name it was made with.

@@ -1,0 +1,369 @@
+//! The reference renderer: what the demos, the tests and the benches draw with on wgpu.
+//!
+//! It draws entities with a [`Drawable`], many at once: the objects of a call are grouped by mesh
+//! and level of detail, and each group is one instanced draw. Only what is drawn is uploaded. No
+//! optional feature of the device is needed.
+//!
+//! ```no_run
+//! use tercet::Culler;
+//! use tercet::draw::{Detail, Renderer, Shading};
+//! use tercet::geom::View;
+//! use tercet::policy::DualQuery;
+//! use tercet::query::gpu::{FrameTargets, GpuQueries, wgpu};
+//! use tercet::scene::Scene;
+//!
+//! fn frame(
+//!     (scene, world, view): (&Scene, &hecs::World, &View),
+//!     (eye, queries, renderer): (&mut Culler<DualQuery>, &mut GpuQueries, &mut Renderer),
+//!     (color, depth): (wgpu::TextureView, wgpu::TextureView),
+//! ) -> Result<(), tercet::Error> {
+//!     let sky = wgpu::LoadOp::Clear(wgpu::Color { r: 0.4, g: 0.6, b: 0.8, a: 1.0 });
+//!     queries.target(&FrameTargets::new(depth).with_color(color, sky));
+//!     renderer.begin(view, Detail::default(), Shading::Lit);
+//!     eye.frame(scene, view, queries, |pass, objects| {
+//!         renderer.draw(pass, world, objects);
+//!     })?;
+//!     println!("{} triangles", renderer.stats().drawn.triangles);
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # The same frame, whatever is left out
+//!
+//! An object's level of detail follows from object and view alone, and a vertex's position from
+//! vertex, object and view: not from who else is drawn, nor from the order. So a culled frame has
+//! the depth of the whole one, bit for bit, and its colours wherever one object alone is nearest.
+//! Where several share the nearest depth the one drawn last shows, as everywhere.
+//!
+//! Positions are transformed in f32 twice, by `world_from_object` and by the view's matrix:
+//! that is what the bounds of [`Mesh::bounds_under`] and of `geom/proxy.rs` allow for. Positions
+//! relative to the eye would be steadier far from the origin, but no longer those.
+//!
+//! | file | |
+//! |---|---|
+//! | `batch` | the objects of one call, put together by mesh and level |
+//! | `arena` | room on the device for what one frame draws |
+//! | `geometry`, `normals` | meshes on the device |
+//! | `camera` | the view as the shaders read it |
+//! | `pipelines` | made when first needed |
+//! | `overlays` | boxes and polygons over a frame |
+
+mod arena;
+mod batch;
+mod camera;
+mod geometry;
+mod normals;
+mod overlays;
+mod pipelines;
+
+use std::ops::{AddAssign, Range};
+
+use bytemuck::{bytes_of, cast_slice};
+use wgpu::{
+    BindGroup, Buffer, BufferDescriptor, BufferUsages, Device, IndexFormat, Queue, RenderPass, TextureFormat,
+    TextureFormatFeatureFlags, TextureUsages,
+};
+
+pub use overlays::Lines;
+
+use super::{Detail, Drawable};
+use crate::Error;
+use crate::geom::View;
+use crate::scene::ObjectRef;
+use crate::scene::mesh::Mesh;
+use arena::Arena;
+use batch::{Batch, Instance};
+use camera::PackedCamera;
+use geometry::Geometry;
+use pipelines::{Kind, Pipelines};
+
+/// How surfaces look. Without a colour target there is only depth, whatever is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Shading {
+    /// By a sun, the sky, the ground and a little light from the eye.
+    #[default]
+    Lit,
+    /// In their own colours.
+    Unlit,
+    /// By the number of layers that are drawn, hidden ones included, over black: red, orange,
+    /// yellow, white. Every surface is drawn twice.
+    Overdraw,
+}
+
+/// What was drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drawn {
+    /// Triangles of all instances; once, although [`Shading::Overdraw`] draws them twice.
+    pub triangles: u64,
+    /// Objects with something to draw.
+    pub instances: u64,
+    /// Draw calls.
+    pub draws: u64,
+}
+
+/// Counters of a [`Renderer`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RendererStats {
+    /// Surfaces since the frame began.
+    pub drawn: Drawn,
+    /// Bytes of objects, boxes and outlines that were uploaded since the frame began.
+    pub uploaded: u64,
+    /// Buffers for them.
+    pub frame_buffers: usize,
+    /// Meshes on the device.
+    pub meshes: usize,
+    /// And their bytes.
+    pub mesh_bytes: u64,
+}
+
+/// Draws entities with a [`Drawable`] into wgpu passes; see the module's example.
+///
+/// Its depth is Depth32Float or Depth24Plus without stencil, as the view says, and so are sample
+/// count and direction of depth. Passes need one colour attachment of the format that it was made
+/// for, or none.
+#[derive(Debug)]
+pub struct Renderer {
+    device: Device,
+    queue: Queue,
+    color: Option<TextureFormat>,
+    pipelines: Pipelines,
+    uniforms: Buffer,
+    bindings: BindGroup,
+    geometry: Geometry,
+    batch: Batch,
+    arena: Arena,
+    /// By sRGB byte: the linear fraction of 65535.
+    linear: [u16; 256],
+    frame: Option<Frame>,
+    drawn: Drawn,
+    uploaded: u64,
+}
+
+/// What a frame is drawn with.
+#[derive(Clone, Debug)]
+struct Frame {
+    view: View,
+    detail: Detail,
+    shading: Shading,
+}
+
+/// The most objects of one draw: what they need fits the buffers of every device.
+const MOST: usize = 1 << 20;
+
+impl Renderer {
+    /// A renderer on the app's device, whose handles it clones. Without a colour format it draws
+    /// depth alone: shadow maps.
+    ///
+    /// # Errors
+    /// [`Error::Target`] for a format that is no colour with at least three channels, or that
+    /// cannot be drawn to and blended.
+    pub fn new(device: &Device, queue: &Queue, color: Option<TextureFormat>) -> Result<Self, Error> {
+        if let Some(format) = color {
+            check(format, device)?;
+        }
+        let pipelines = Pipelines::new(device, color);
+        let uniforms = device.create_buffer(&BufferDescriptor {
+            label: Some("tercet camera"),
+            size: size_of::<PackedCamera>() as u64,
+            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Ok(Self {
+            device: device.clone(),
+            queue: queue.clone(),
+            color,
+            bindings: pipelines.bind(device, &uniforms),
+            pipelines,
+            uniforms,
+            geometry: Geometry::default(),
+            batch: Batch::default(),
+            arena: Arena::default(),
+            linear: std::array::from_fn(linear),
+            frame: None,
+            drawn: Drawn::default(),
+            uploaded: 0,
+        })
+    }
+
+    /// Starts a frame of a view.
+    ///
+    /// What was recorded before must have been submitted: its uniforms and objects are overwritten.
+    /// ([`Culler::frame`](crate::Culler::frame) on the GPU backend submits all of its own.) Views
+    /// that are submitted together need a renderer each.
+    pub fn begin(&mut self, view: &View, detail: Detail, shading: Shading) {
+        let encodes = self.color.is_some_and(|format| !takes_linear(format));
+        self.queue.write_buffer(&self.uniforms, 0, bytes_of(&PackedCamera::new(view, encodes)));
+        self.arena.clear();
+        (self.drawn, self.uploaded) = (Drawn::default(), 0);
+        self.frame = Some(Frame { view: view.clone(), detail, shading });
+    }
+
+    /// Draws objects. Whoever has no [`Drawable`] is left out; before the first
+    /// [`Renderer::begin`], everybody is.
+    ///
+    /// Meshes that are new are uploaded. O(objects); no memory is allocated once a frame like this
+    /// one has been drawn. Sets pipeline, bind group 0, vertex buffers 0 and 1 and the index buffer.
+    pub fn draw(
+        &mut self,
+        pass: &mut RenderPass<'static>,
+        world: &hecs::World,
+        objects: &[ObjectRef],
+    ) -> Drawn {
+        self.draw_all(pass, world, objects.iter().map(|&object| (object, [0; 4])))
+    }
+
+    /// The same, with a colour laid over each object's own: alpha 255 replaces it, alpha 0 leaves
+    /// it as it is. Surfaces stay opaque.
+    pub fn draw_tinted(
+        &mut self,
+        pass: &mut RenderPass<'static>,
+        world: &hecs::World,
+        objects: impl IntoIterator<Item = (ObjectRef, [u8; 4])>,
+    ) -> Drawn {
+        self.draw_all(pass, world, objects.into_iter())
+    }
+
+    /// Uploads a mesh before it is first drawn, so that drawing it takes no longer than usual.
+    pub fn upload(&mut self, mesh: &Mesh) {
+        self.geometry.first_group(&self.device, mesh);
+    }
+
+    /// Frees the device's memory of a mesh that is not drawn any more. O(meshes).
+    pub fn forget(&mut self, mesh: &Mesh) {
+        self.geometry.forget(mesh);
+    }
+
+    /// What the frame has come to so far, and what is kept.
+    pub fn stats(&self) -> RendererStats {
+        let (meshes, mesh_bytes) = self.geometry.size();
+        let (drawn, uploaded) = (self.drawn, self.uploaded);
+        RendererStats { drawn, uploaded, frame_buffers: self.arena.buffers(), meshes, mesh_bytes }
+    }
+
+    fn draw_all(
+        &mut self,
+        pass: &mut RenderPass<'static>,
+        world: &hecs::World,
+        objects: impl Iterator<Item = (ObjectRef, [u8; 4])>,
+    ) -> Drawn {
+        let mut drawn = Drawn::default();
+        let Some(frame) = self.frame.take() else { return drawn };
+        let drawables = world.view::<&Drawable>();
+        for (object, tint) in objects {
+            let Some(drawable) = drawables.get(object.entity()) else { continue };
+            let Drawable { mesh, world_from_object, color } = drawable;
+            let level = frame.detail.level(mesh, world_from_object, &frame.view);
+            let group = self.geometry.first_group(&self.device, mesh) + level as u32;
+            if self.geometry.group(group).index_count == 0 {
+                continue;
+            }
+            let color = tinted(*color, tint).map(|c| self.linear[usize::from(c)]);
+            self.batch.push(group, Instance::new(world_from_object, color));
+            if self.batch.len() == MOST {
+                drawn += self.draw_batch(pass, &frame);
+            }
+        }
+        drawn += self.draw_batch(pass, &frame);
+        self.frame = Some(frame);
+        self.drawn += drawn;
+        drawn
+    }
+
+    fn draw_batch(&mut self, pass: &mut RenderPass<'static>, frame: &Frame) -> Drawn {
+        let mut drawn = Drawn::default();
+        let (instances, runs) = self.batch.sort();
+        if instances.is_empty() {
+            return drawn;
+        }
+        let bytes = cast_slice(instances);
+        let (buffer, offset) = self.arena.write(&self.device, &self.queue, bytes);
+        self.uploaded += bytes.len() as u64;
+        drawn.instances = instances.len() as u64;
+        for run in runs {
+            let triangles = u64::from(self.geometry.group(run.group).index_count / 3);
+            drawn.triangles += triangles * run.instances.len() as u64;
+        }
+        pass.set_bind_group(0, &self.bindings, &[]);
+        let kinds: &[Kind] = match (frame.shading, self.color) {
+            (_, None) => &[Kind::Depth],
+            (Shading::Lit, _) => &[Kind::Lit],
+            (Shading::Unlit, _) => &[Kind::Unlit],
+            (Shading::Overdraw, _) => &[Kind::Depth, Kind::Layers],
+        };
+        for &kind in kinds {
+            pass.set_pipeline(self.pipelines.get(&self.device, kind, &frame.view));
+            for run in runs {
+                let group = self.geometry.group(run.group);
+                // The instances' buffer is moved to the first one, since a first instance other
+                // than 0 is not to be had everywhere.
+                let first = offset + u64::from(run.instances.start) * size_of::<Instance>() as u64;
+                pass.set_vertex_buffer(0, group.vertices.slice(..));
+                pass.set_vertex_buffer(1, buffer.slice(first..));
+                pass.set_index_buffer(group.indices.slice(..), IndexFormat::Uint32);
+                pass.draw_indexed(0..group.index_count, 0, 0..run.instances.len() as u32);
+                drawn.draws += 1;
+            }
+        }
+        drawn
+    }
+
+    /// Draws something of one vertex buffer over the frame.
+    fn draw_overlay(
+        &mut self,
+        pass: &mut RenderPass<'static>,
+        kind: Kind,
+        bytes: &[u8],
+        vertices: Range<u32>,
+        instances: Range<u32>,
+    ) {
+        let (Some(frame), Some(_), false) = (&self.frame, self.color, bytes.is_empty()) else { return };
+        let (buffer, offset) = self.arena.write(&self.device, &self.queue, bytes);
+        self.uploaded += bytes.len() as u64;
+        pass.set_pipeline(self.pipelines.get(&self.device, kind, &frame.view));
+        pass.set_bind_group(0, &self.bindings, &[]);
+        pass.set_vertex_buffer(0, buffer.slice(offset..));
+        pass.draw(vertices, instances);
+    }
+}
+
+impl AddAssign for Drawn {
+    fn add_assign(&mut self, other: Self) {
+        self.triangles += other.triangles;
+        self.instances += other.instances;
+        self.draws += other.draws;
+    }
+}
+
+/// A colour with another laid over it.
+fn tinted(color: [u8; 3], [r, g, b, alpha]: [u8; 4]) -> [u8; 3] {
+    let alpha = u32::from(alpha);
+    let mix = |own: u8, over: u8| (u32::from(own) * (255 - alpha) + u32::from(over) * alpha + 127) / 255;
+    [mix(color[0], r) as u8, mix(color[1], g) as u8, mix(color[2], b) as u8]
+}
+
+/// The linear fraction of 65535 that an sRGB byte stands for.
+fn linear(byte: usize) -> u16 {
+    let c = byte as f64 / 255.0;
+    let linear = if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+    (linear * 65535.0).round() as u16
+}
+
+/// Whether a format takes linear colours: encodes them itself, or has the range for them.
+fn takes_linear(format: TextureFormat) -> bool {
+    use TextureFormat::{Rg11b10Ufloat, Rgba16Float, Rgba32Float};
+    format.is_srgb() || matches!(format, Rg11b10Ufloat | Rgba16Float | Rgba32Float)
+}
+
+fn check(format: TextureFormat, device: &Device) -> Result<(), Error> {
+    let unusable = |why| Err(Error::Target { why: format!("{format:?} {why}: use Rgba8UnormSrgb") });
+    if !format.has_color_aspect() || format.components() < 3 {
+        return unusable("is no colour of at least three channels");
+    }
+    let features = format.guaranteed_format_features(device.features());
+    if !features.allowed_usages.contains(TextureUsages::RENDER_ATTACHMENT)
+        || !features.flags.contains(TextureFormatFeatureFlags::BLENDABLE)
+    {
+        return unusable("cannot be drawn to and blended on this device");
+    }
+    Ok(())
+}

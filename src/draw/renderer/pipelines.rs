@@ -1,0 +1,280 @@
+//! The pipelines, made when they are first needed.
+
+use std::collections::HashMap;
+use std::mem::offset_of;
+
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor,
+    BindGroupLayoutEntry, BindingType, BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer,
+    BufferBindingType, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device,
+    FragmentState, MultisampleState, PipelineLayout, PipelineLayoutDescriptor, PrimitiveState,
+    PrimitiveTopology, RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderModuleDescriptor,
+    ShaderSource, ShaderStages, TextureFormat, VertexAttribute, VertexBufferLayout, VertexFormat,
+    VertexState, VertexStepMode,
+};
+
+use super::batch::Instance;
+use super::normals::Vertex;
+use super::overlays::{BoxEdges, Corner};
+use crate::geom::{DepthDirection, DepthFormat, View};
+
+/// The shaders' sources: surfaces, and what lies over them. WGSL has no includes: the parts are put
+/// together when the crate is built.
+pub(super) const SOURCES: [&str; 2] = [
+    concat!(
+        include_str!("../../../shaders/shared/camera.wgsl"),
+        include_str!("../../../shaders/surfaces.wgsl")
+    ),
+    concat!(
+        include_str!("../../../shaders/shared/camera.wgsl"),
+        include_str!("../../../shaders/overlays.wgsl")
+    ),
+];
+
+/// What a pipeline draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Kind {
+    /// Surfaces, shaded.
+    Lit,
+    /// Surfaces in their own colours.
+    Unlit,
+    /// Surfaces, into the depth alone.
+    Depth,
+    /// Every layer of surfaces, into the colour alone.
+    Layers,
+    /// Edges of boxes where nothing is nearer.
+    Edges,
+    /// Edges of boxes, whatever is nearer.
+    XRayEdges,
+    /// Polygons on the screen.
+    Polygons,
+    /// Lines on the screen.
+    Borders,
+}
+
+/// What else it depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Key {
+    kind: Kind,
+    is_reversed: bool,
+    is_float: bool,
+    samples: u32,
+}
+
+#[derive(Debug)]
+pub(super) struct Pipelines {
+    color: Option<TextureFormat>,
+    modules: [ShaderModule; 2],
+    bindings: BindGroupLayout,
+    layout: PipelineLayout,
+    made: HashMap<Key, RenderPipeline>,
+}
+
+impl Pipelines {
+    pub(super) fn new(device: &Device, color: Option<TextureFormat>) -> Self {
+        let modules = SOURCES.map(|source| {
+            device.create_shader_module(ShaderModuleDescriptor {
+                label: Some("tercet renderer"),
+                source: ShaderSource::Wgsl(source.into()),
+            })
+        });
+        let camera = BindGroupLayoutEntry {
+            binding: 0,
+            visibility: ShaderStages::VERTEX_FRAGMENT,
+            ty: BindingType::Buffer {
+                ty: BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let label = Some("tercet camera");
+        let bindings =
+            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label, entries: &[camera] });
+        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some("tercet renderer"),
+            bind_group_layouts: &[Some(&bindings)],
+            immediate_size: 0,
+        });
+        Self { color, modules, bindings, layout, made: HashMap::new() }
+    }
+
+    /// Binds the uniforms.
+    pub(super) fn bind(&self, device: &Device, uniforms: &Buffer) -> BindGroup {
+        device.create_bind_group(&BindGroupDescriptor {
+            label: Some("tercet camera"),
+            layout: &self.bindings,
+            entries: &[BindGroupEntry { binding: 0, resource: uniforms.as_entire_binding() }],
+        })
+    }
+
+    /// The pipeline for a view's target.
+    pub(super) fn get(&mut self, device: &Device, kind: Kind, view: &View) -> &RenderPipeline {
+        let key = Key {
+            kind,
+            is_reversed: view.depth() == DepthDirection::Reversed,
+            is_float: view.format() == DepthFormat::Depth32Float,
+            samples: view.samples(),
+        };
+        let Self { color, modules, layout, made, .. } = self;
+        made.entry(key).or_insert_with(|| key.make(device, modules, layout, *color))
+    }
+}
+
+impl Key {
+    fn make(
+        &self,
+        device: &Device,
+        [surfaces, overlays]: &[ShaderModule; 2],
+        layout: &PipelineLayout,
+        color: Option<TextureFormat>,
+    ) -> RenderPipeline {
+        let Recipe { stages, buffers, topology, blend, draws_color, depth } = self.kind.recipe();
+        let module = if self.kind.is_surface() { surfaces } else { overlays };
+        let write_mask = if draws_color { ColorWrites::ALL } else { ColorWrites::empty() };
+        let target = color.map(|format| [Some(ColorTargetState { format, blend, write_mask })]);
+        let fragment = target.as_ref().map(|targets| FragmentState {
+            module,
+            entry_point: Some(stages[1]),
+            compilation_options: Default::default(),
+            targets,
+        });
+        let buffers: Vec<_> = buffers.into_iter().map(Some).collect();
+        device.create_render_pipeline(&RenderPipelineDescriptor {
+            label: Some("tercet renderer"),
+            layout: Some(layout),
+            vertex: VertexState {
+                module,
+                entry_point: Some(stages[0]),
+                compilation_options: Default::default(),
+                buffers: &buffers,
+            },
+            primitive: PrimitiveState { topology, ..Default::default() },
+            depth_stencil: Some(DepthStencilState {
+                format: if self.is_float { TextureFormat::Depth32Float } else { TextureFormat::Depth24Plus },
+                depth_write_enabled: Some(depth == Depth::TestedAndWritten),
+                depth_compare: Some(match (depth, self.is_reversed) {
+                    (Depth::Ignored, _) => CompareFunction::Always,
+                    (_, true) => CompareFunction::GreaterEqual,
+                    (_, false) => CompareFunction::LessEqual,
+                }),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: MultisampleState { count: self.samples, ..Default::default() },
+            fragment,
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// What a kind needs.
+struct Recipe {
+    /// The vertex stage, and the fragment stage if there is a colour.
+    stages: [&'static str; 2],
+    buffers: Vec<VertexBufferLayout<'static>>,
+    topology: PrimitiveTopology,
+    blend: Option<BlendState>,
+    draws_color: bool,
+    depth: Depth,
+}
+
+/// What becomes of the depth. As near as what is there passes.
+#[derive(Clone, Copy, PartialEq)]
+enum Depth {
+    TestedAndWritten,
+    Tested,
+    Ignored,
+}
+
+impl Kind {
+    fn is_surface(self) -> bool {
+        matches!(self, Self::Lit | Self::Unlit | Self::Depth | Self::Layers)
+    }
+
+    fn recipe(self) -> Recipe {
+        let surfaces = |stages| Recipe {
+            stages,
+            buffers: vec![VERTICES, INSTANCES],
+            topology: PrimitiveTopology::TriangleList,
+            blend: None,
+            draws_color: true,
+            depth: Depth::TestedAndWritten,
+        };
+        let overlays = |stage, buffer, topology, depth| Recipe {
+            stages: [stage, "plain"],
+            buffers: vec![buffer],
+            topology,
+            blend: Some(BlendState::ALPHA_BLENDING),
+            draws_color: true,
+            depth,
+        };
+        let edges = |depth| overlays("box_edge", BOXES, PrimitiveTopology::LineList, depth);
+        let on_screen = |topology| overlays("corner", CORNERS, topology, Depth::Ignored);
+        match self {
+            Self::Lit => surfaces(["surface", "lit"]),
+            Self::Unlit => surfaces(["surface", "unlit"]),
+            Self::Depth => Recipe { draws_color: false, ..surfaces(["place", "nothing"]) },
+            Self::Layers => {
+                Recipe { blend: Some(ADDED), depth: Depth::Ignored, ..surfaces(["place", "layer"]) }
+            }
+            Self::Edges => edges(Depth::Tested),
+            Self::XRayEdges => edges(Depth::Ignored),
+            Self::Polygons => on_screen(PrimitiveTopology::TriangleList),
+            Self::Borders => on_screen(PrimitiveTopology::LineList),
+        }
+    }
+}
+
+const ADDED: BlendState = {
+    let sum = BlendComponent {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    };
+    BlendState { color: sum, alpha: sum }
+};
+
+const VERTICES: VertexBufferLayout<'_> = VertexBufferLayout {
+    array_stride: size_of::<Vertex>() as u64,
+    step_mode: VertexStepMode::Vertex,
+    attributes: &[
+        attribute(0, VertexFormat::Float32x3, offset_of!(Vertex, position)),
+        attribute(1, VertexFormat::Snorm16x4, offset_of!(Vertex, normal)),
+    ],
+};
+
+const INSTANCES: VertexBufferLayout<'_> = VertexBufferLayout {
+    array_stride: size_of::<Instance>() as u64,
+    step_mode: VertexStepMode::Instance,
+    attributes: &[
+        attribute(2, VertexFormat::Float32x4, offset_of!(Instance, rows)),
+        attribute(3, VertexFormat::Float32x4, offset_of!(Instance, rows) + 16),
+        attribute(4, VertexFormat::Float32x4, offset_of!(Instance, rows) + 32),
+        attribute(5, VertexFormat::Unorm16x4, offset_of!(Instance, color)),
+    ],
+};
+
+const BOXES: VertexBufferLayout<'_> = VertexBufferLayout {
+    array_stride: size_of::<BoxEdges>() as u64,
+    step_mode: VertexStepMode::Instance,
+    attributes: &[
+        attribute(0, VertexFormat::Float32x3, offset_of!(BoxEdges, low)),
+        attribute(1, VertexFormat::Float32x3, offset_of!(BoxEdges, high)),
+        attribute(2, VertexFormat::Unorm8x4, offset_of!(BoxEdges, color)),
+    ],
+};
+
+const CORNERS: VertexBufferLayout<'_> = VertexBufferLayout {
+    array_stride: size_of::<Corner>() as u64,
+    step_mode: VertexStepMode::Vertex,
+    attributes: &[
+        attribute(0, VertexFormat::Float32x2, offset_of!(Corner, pixel)),
+        attribute(1, VertexFormat::Unorm8x4, offset_of!(Corner, color)),
+    ],
+};
+
+const fn attribute(shader_location: u32, format: VertexFormat, offset: usize) -> VertexAttribute {
+    VertexAttribute { format, offset: offset as u64, shader_location }
+}
