@@ -4,7 +4,11 @@
 //! backend: draws join the render queue, questions flush it first, answers go back to the policy.
 //! An answer that does not come is *unknown*, which draws; one that nobody waits for is dropped.
 
+mod why;
+
 use std::time::{Duration, Instant};
+
+pub use why::{Holder, Why};
 
 use crate::geom::{Frustum, PlaneMask, View};
 use crate::policy::{Action, Context, Extent, Policy};
@@ -351,9 +355,12 @@ impl DrawnList {
     }
 
     fn left(&self) -> impl Iterator<Item = ObjectRef> {
-        self.previous.iter().copied().filter(|object| {
-            self.last_drawn.get(object.id.slot()) != Some(&(object.id.generation(), self.frame))
-        })
+        self.previous.iter().copied().filter(|object| !self.has(object.id))
+    }
+
+    /// Whether an object was drawn in the last frame.
+    fn has(&self, id: ObjectId) -> bool {
+        self.last_drawn.get(id.slot()) == Some(&(id.generation(), self.frame))
     }
 }
 

@@ -84,7 +84,7 @@ pub mod tree;
 pub mod worlds;
 
 pub use costs::Costs;
-pub use culler::{Culler, Voter};
+pub use culler::{Culler, Holder, Voter, Why};
 pub use dial::{Dial, DialKind};
 pub use error::Error;
 pub use stats::FrameStats;

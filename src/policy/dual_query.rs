@@ -27,7 +27,7 @@ use std::collections::VecDeque;
 use super::front::{Front, FrontQueue};
 use super::order::Waiting;
 use super::skip::{Seen, Share, Turnover};
-use super::{Action, Context, Extent, History, Policy, ScreenTiles, Skip};
+use super::{Action, Context, Extent, Fate, History, Policy, Samples, ScreenTiles, Skip};
 use crate::Error;
 use crate::dial::{self, Dial};
 use crate::geom::{PlaneMask, Proxy, Question, Viewport};
@@ -182,8 +182,7 @@ impl Policy for DualQuery {
         } else if visible {
             self.count_streak(cx, node, share);
         } else {
-            let state = self.history.entry(node);
-            (state.frame, state.visible, state.streak) = (cx.frame, false, 0);
+            self.history.found_hidden(node, cx.frame);
         }
     }
 
@@ -194,7 +193,18 @@ impl Policy for DualQuery {
 
     fn vote(&mut self, votes: &mut Votes) {
         votes.forward = self.votes.forward;
-        votes.votes.append(&mut self.votes.votes);
+        // Kept until the next frame begins, for `fate`.
+        votes.votes.extend_from_slice(&self.votes.votes);
+    }
+
+    /// O(questions of the frame) for a leaf that was asked about, to find its counts.
+    fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
+        match self.history.fate(cx, node) {
+            Fate::Visible { .. } => Fate::Visible { samples: self.samples(node) },
+            // An inner node that was visible is opened for as long as something below it is.
+            Fate::Remembered { .. } if !cx.tree.is_leaf(node) => Fate::Remembered { within: None },
+            fate => fate,
+        }
     }
 
     fn dials(&self) -> Vec<Dial> {
@@ -359,6 +369,12 @@ impl DualQuery {
                 self.front.push(cx, child, mask);
             }
         }
+    }
+
+    /// What was counted of a leaf in this frame.
+    fn samples(&self, node: NodeId) -> Option<Samples> {
+        let vote = self.votes.votes.iter().find(|vote| vote.node == node)?;
+        Some(Samples { visible: vote.visible, total: vote.total })
     }
 
     /// An opened node none of whose children was visible was hidden as a whole.

@@ -1,7 +1,8 @@
 //! View-frustum culling (*VFC*): what does not meet the frustum is not drawn, and nothing is
 //! asked.
 
-use super::{Action, Answer, Context, Extent, Policy, Ticket};
+use super::{Action, Answer, Context, Extent, Fate, Policy, Ticket};
+use crate::tree::NodeId;
 
 /// Draws every object whose box meets the view frustum. The driver walks the tree with plane
 /// masks inherited down, so this is the whole of it.
@@ -28,4 +29,8 @@ impl Policy for FrustumOnly {
     }
 
     fn answer(&mut self, _cx: &Context<'_>, _ticket: Ticket, _answer: Answer<'_>) {}
+
+    fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
+        if cx.frustum.intersects(&cx.tree.bounds(node)) { Fate::Unasked } else { Fate::Outside }
+    }
 }

@@ -14,9 +14,9 @@ pub struct NodeState {
     pub visible: bool,
     /// Consecutive answers that found it visible.
     pub streak: u32,
-    /// The frame of the last of them; 0 for never.
+    /// The frame of the last answer, or of the last time that the near plane answered; 0 for never.
     pub asked_at: u32,
-    /// What it said.
+    /// What the last answer that found it visible said.
     pub share: Share,
     /// The last frame for which it is taken as visible without asking.
     pub skip_until: u32,
@@ -60,6 +60,12 @@ impl History {
         recall(&self.states, node)
     }
 
+    /// Remembers that an answer of this frame found a node hidden.
+    pub fn found_hidden(&mut self, node: NodeId, frame: u32) {
+        let state = self.entry(node);
+        (state.frame, state.asked_at, state.visible, state.streak) = (frame, frame, false, 0);
+    }
+
     /// The memory of a node, to write.
     pub fn entry(&mut self, node: NodeId) -> &mut NodeState {
         let state = &mut self.states[node.index()];
@@ -67,6 +73,11 @@ impl History {
             *state = NodeState { identity: node.identity(), ..NodeState::default() };
         }
         state
+    }
+
+    /// The number of the first edit that has not been followed.
+    pub(super) fn cursor(&self) -> u64 {
+        self.cursor
     }
 
     fn apply(states: &mut [NodeState], edit: &Edit) {

@@ -6,6 +6,7 @@
 //! each backend, is tested without one, and a recorded frame replays bit for bit.
 
 mod dual_query;
+mod fate;
 mod front;
 mod frustum;
 mod history;
@@ -17,6 +18,7 @@ mod statistical;
 mod stop_and_wait;
 
 pub use dual_query::{DualQuery, Order};
+pub use fate::{Fate, Samples};
 pub use frustum::FrustumOnly;
 pub use history::{History, NodeState};
 pub use none::DrawAll;
@@ -113,6 +115,12 @@ pub trait Policy: Send + Sync {
     /// The dual answers of the frame, for the tree's adaptation; it may add none.
     fn vote(&mut self, _votes: &mut Votes) {}
 
+    /// What became of a node in the last frame, read off what the policy remembers: `cx` is that
+    /// frame's. It is for pictures and explanations, and costs nothing until somebody asks.
+    fn fate(&self, _cx: &Context<'_>, _node: NodeId) -> Fate {
+        Fate::Unknown
+    }
+
     /// What it must be given before each frame, if it is a reference ([`Recorded`]).
     fn wants_recorded(&self) -> Option<Recording> {
         None
@@ -162,6 +170,10 @@ impl Policy for Box<dyn Policy> {
 
     fn vote(&mut self, votes: &mut Votes) {
         (**self).vote(votes);
+    }
+
+    fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
+        (**self).fate(cx, node)
     }
 
     fn wants_recorded(&self) -> Option<Recording> {

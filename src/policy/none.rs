@@ -1,6 +1,7 @@
 //! No culling (*NOC*): everything is drawn, inside the frustum or not.
 
-use super::{Action, Answer, Context, Extent, Policy, Ticket};
+use super::{Action, Answer, Context, Extent, Fate, Policy, Ticket};
+use crate::tree::NodeId;
 
 /// Draws every object: what culling is measured against.
 #[derive(Clone, Debug, Default)]
@@ -26,4 +27,8 @@ impl Policy for DrawAll {
     }
 
     fn answer(&mut self, _cx: &Context<'_>, _ticket: Ticket, _answer: Answer<'_>) {}
+
+    fn fate(&self, _cx: &Context<'_>, _node: NodeId) -> Fate {
+        Fate::Unasked
+    }
 }

@@ -1,7 +1,8 @@
 //! References: a set of objects found beforehand is drawn, and nothing is asked.
 
-use super::{Action, Answer, Context, Policy, Ticket};
+use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::scene::ObjectId;
+use crate::tree::NodeId;
 
 /// What a reference policy must be given before each frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +50,10 @@ impl Policy for Recorded {
     }
 
     fn answer(&mut self, _cx: &Context<'_>, _ticket: Ticket, _answer: Answer<'_>) {}
+
+    fn fate(&self, _cx: &Context<'_>, _node: NodeId) -> Fate {
+        Fate::Given
+    }
 
     fn wants_recorded(&self) -> Option<Recording> {
         Some(self.recording)

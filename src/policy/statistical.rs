@@ -13,7 +13,7 @@
 use std::collections::VecDeque;
 
 use super::front::{Front, FrontQueue};
-use super::{Action, Answer, Context, Extent, History, Policy, Ticket};
+use super::{Action, Answer, Context, Extent, Fate, History, Policy, Ticket};
 use crate::Error;
 use crate::dial::{self, Dial};
 use crate::geom::{PlaneMask, Proxy, Question};
@@ -90,13 +90,16 @@ impl Policy for Statistical {
         if answer.is_visible(cx.tradeoff.visible_pixels) {
             self.found_visible(cx, front);
         } else {
-            let state = self.history.entry(front.node);
-            (state.frame, state.visible, state.streak) = (cx.frame, false, 0);
+            self.history.found_hidden(front.node, cx.frame);
         }
     }
 
     fn reset(&mut self) {
         self.history.clear();
+    }
+
+    fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
+        self.history.fate(cx, node)
     }
 
     fn dials(&self) -> Vec<Dial> {
@@ -145,6 +148,7 @@ impl Statistical {
         let n_skip = self.n_skip;
         let state = self.history.entry(front.node);
         state.streak = state.streak.saturating_add(1);
+        state.asked_at = cx.frame;
         state.skip_until = cx.frame.saturating_add(state.streak.min(n_skip));
         self.take_as_visible(cx, front);
     }

@@ -3,7 +3,7 @@
 //! of the same hierarchy, front to back, knows more when it decides.
 
 use super::front::{Front, FrontQueue};
-use super::{Action, Answer, Context, Extent, Policy, Ticket};
+use super::{Action, Answer, Context, Extent, Fate, History, Policy, Ticket};
 use crate::geom::{PlaneMask, Proxy, Question};
 use crate::query::{Wait, Want};
 use crate::tree::NodeId;
@@ -11,6 +11,8 @@ use crate::tree::NodeId;
 /// See the module's documentation.
 #[derive(Clone, Debug, Default)]
 pub struct StopAndWait {
+    /// Decides nothing: for [`Policy::fate`] alone.
+    history: History,
     front: FrontQueue,
     /// The node in question, with its proxy.
     asked: Option<(Front, Proxy)>,
@@ -30,6 +32,7 @@ impl Policy for StopAndWait {
     }
 
     fn begin(&mut self, cx: &Context<'_>) {
+        self.history.follow(cx.tree);
         self.front.clear();
         (self.asked, self.waiting, self.draw) = (None, false, None);
         self.front.push(cx, cx.tree.root(), PlaneMask::ALL);
@@ -58,16 +61,27 @@ impl Policy for StopAndWait {
     }
 
     fn answer(&mut self, cx: &Context<'_>, _ticket: Ticket, answer: Answer<'_>) {
-        if let Some((front, _)) = self.asked.take()
-            && answer.is_visible(cx.tradeoff.visible_pixels)
-        {
+        let Some((front, _)) = self.asked.take() else { return };
+        if answer.is_visible(cx.tradeoff.visible_pixels) {
             self.found_visible(cx, front);
+        } else {
+            self.history.found_hidden(front.node, cx.frame);
         }
+    }
+
+    fn reset(&mut self) {
+        self.history.clear();
+    }
+
+    fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
+        self.history.fate(cx, node)
     }
 }
 
 impl StopAndWait {
     fn found_visible(&mut self, cx: &Context<'_>, front: Front) {
+        let state = self.history.entry(front.node);
+        (state.frame, state.asked_at, state.visible, state.streak) = (cx.frame, cx.frame, true, 1);
         if cx.tree.own_count(front.node) > 0 {
             self.draw = Some(front.node);
         }

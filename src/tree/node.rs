@@ -122,6 +122,11 @@ impl Nodes {
         self.child[node as usize] == NONE
     }
 
+    /// Whether every object of the node straddles some plane.
+    pub(crate) fn is_straddle(&self, node: u32) -> bool {
+        !self.straddled[node as usize].is_nan_mask().all()
+    }
+
     /// The indices of an inner node's children.
     pub(crate) fn children(&self, node: u32) -> std::ops::Range<u32> {
         match self.child[node as usize] {

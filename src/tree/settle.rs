@@ -16,8 +16,7 @@ impl Tree {
         let n = node.index();
         // A straddle child's cell is its parent's, and so is the cell of what it is split into,
         // but for the axes of those splits: their own box is the published choice.
-        let across = !self.nodes.straddled[n].is_nan_mask().all();
-        let tight = across
+        let tight = self.nodes.is_straddle(node.index)
             || match self.config.tight_boxes {
                 TightBoxes::Never => false,
                 TightBoxes::Settled => self.is_settled(node),

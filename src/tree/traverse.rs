@@ -20,6 +20,8 @@ pub struct NodeInfo {
     pub cell: Aabb,
     /// The box around everything below; empty for an empty node.
     pub bounds: Aabb,
+    /// Whether it is a straddle child, or below one: all of its objects cross some plane.
+    pub is_straddle: bool,
     /// Whether it has no children.
     pub is_leaf: bool,
     /// Objects of its own.
@@ -49,6 +51,11 @@ impl Tree {
     pub fn parent(&self, node: NodeId) -> Option<NodeId> {
         let parent = self.nodes.parent[node.index()];
         (parent != NONE).then(|| self.nodes.id(parent))
+    }
+
+    /// The node that holds an object slot as its own, if the tree holds it. O(1).
+    pub fn node_of(&self, slot: u32) -> Option<NodeId> {
+        Some(self.nodes.id(self.blocks.owner_of(slot)?))
     }
 
     /// Objects in a node and below.
@@ -106,6 +113,7 @@ impl Tree {
                 depth: self.nodes.depth[n],
                 cell: self.nodes.cell[n],
                 bounds: self.nodes.bounds[n],
+                is_straddle: self.nodes.is_straddle(node),
                 is_leaf: self.nodes.is_leaf(node),
                 own: self.nodes.run[n].len as usize,
                 below: self.nodes.below[n] as usize,
