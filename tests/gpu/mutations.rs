@@ -121,7 +121,8 @@ fn wrong_shaders_are_found_out() {
                 }
                 Broken::Native => GpuConfig { any: AnyBy::Native, shaders, ..GpuConfig::default() },
             };
-            let mut twin = Twin::new(&gpu, config);
+            let windows = if broken == Broken::Native { 4 } else { 0 };
+            let mut twin = Twin::new(&gpu, [config], windows);
             let mut dice = ChaCha8Rng::seed_from_u64(11);
             for convention in conventions(&gpu).into_iter().cycle().take(24) {
                 if twin.tally.faults == 0 {
