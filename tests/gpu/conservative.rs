@@ -5,13 +5,13 @@
 use tercet::Culler;
 use tercet::geom::{DepthFormat, Frustum, Viewport};
 use tercet::policy::{self, Policy};
-use tercet::query::gpu::{Counting, GpuConfig, GpuQueries, Shaders};
+use tercet::query::gpu::{AnyBy, Counting, GpuConfig, GpuQueries, Shaders};
 use tercet::scene::{ObjectSet, Scene, SceneConfig};
 use tercet::worlds::{self, Model, Pathology};
 
 use crate::renderer::Renderer;
 use crate::stage::Stage;
-use crate::support::{Gpu, depth_texture, gpus, read_depth, targets, ways};
+use crate::support::{Gpu, depth_texture, gpus, read_depth, targets};
 
 const SCREEN: Viewport = Viewport::new(96, 54);
 const FRAMES: u32 = 12;
@@ -76,42 +76,56 @@ fn run(
     }
 }
 
-/// Policies that ask, with the dials that matter here.
-fn policies() -> Vec<(&'static str, Box<dyn Policy>)> {
-    let named = |name: &str| policy::by_name(name).expect("a policy of that name");
-    let mut visible_first = named("dual-query");
-    visible_first.set("order", "visible-first").expect("a dial of that name");
-    vec![
-        ("dual-query", named("dual-query")),
-        ("dual-query, visible first", visible_first),
-        ("statistical", named("statistical")),
-        ("stop-and-wait", named("stop-and-wait")),
-    ]
+/// A policy that asks, with the dials that matter here.
+fn policy(name: &str) -> Box<dyn Policy> {
+    let (name, order) = name.split_once(", ").map_or((name, None), |(name, order)| (name, Some(order)));
+    let mut policy = policy::by_name(name).expect("a policy of that name");
+    if let Some(order) = order {
+        policy.set("order", order).expect("a dial of that name");
+    }
+    policy
+}
+
+/// What is run on random worlds: dials, policies, and how many worlds. Policies ask in other ways,
+/// and ways of counting differ in what they count, but hardly in how they are asked. So all
+/// policies are run with the default, and each way with one that asks for counts and one that asks
+/// for any.
+fn runs() -> Vec<(GpuConfig, &'static [&'static str], u64)> {
+    let default = GpuConfig::default();
+    let all: &[_] = &["dual-query", "dual-query, visible-first", "statistical", "stop-and-wait"];
+    let mut runs = vec![(default.clone(), all, 5)];
+    for counting in Counting::ALL {
+        let config = GpuConfig { counting: Some(counting), ..default.clone() };
+        runs.push((config, &["dual-query", "statistical"], 2));
+    }
+    let native = GpuConfig { any: AnyBy::Native, ..default };
+    runs.push((native, &["statistical", "stop-and-wait"], 3));
+    runs
 }
 
 #[test]
 fn random_worlds() {
     for gpu in gpus() {
-        for counting in ways() {
-            let config = GpuConfig { counting, ..GpuConfig::default() };
+        for (config, policies, worlds) in runs() {
+            let what = format!("{:?}, {:?}, any by {:?}", gpu.backend, config.counting, config.any);
             let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
-            for &samples in gpu.sample_counts() {
-                for (i, (name, _)) in policies().into_iter().enumerate() {
-                    let mut all = Outcome::default();
-                    for seed in 0..5 {
-                        let (_, policy) = policies().swap_remove(i);
-                        let formats = [DepthFormat::Depth32Float, DepthFormat::Depth24Plus];
-                        let target = (formats[seed as usize % 2], samples);
-                        let world = (worlds::random(seed, 120), seed);
-                        run(&gpu, &mut queries, policy, world, target, &mut all);
-                    }
-                    let run = format!("{:?}, {counting:?}, {samples} samples, {name}", gpu.backend);
-                    println!("{run}: {all:?}");
-                    assert_eq!((all.lost, all.wrong), (0, 0), "{run} lost objects: {all:?}");
-                    assert!(all.hidden > 1000 && all.visible > 500, "there are things to hide: {all:?}");
-                    assert!(all.culled * 3 > all.hidden, "{run} culled little: {all:?}");
-                    assert!(all.extra_submits <= 0, "{run} submits more than once a wave: {all:?}");
+            for (&samples, name) in
+                gpu.sample_counts().iter().flat_map(|s| policies.iter().map(move |p| (s, p)))
+            {
+                let mut all = Outcome::default();
+                for seed in 0..worlds {
+                    let formats = [DepthFormat::Depth32Float, DepthFormat::Depth24Plus];
+                    let target = (formats[seed as usize % 2], samples);
+                    let world = (worlds::random(seed, 120), seed);
+                    run(&gpu, &mut queries, policy(name), world, target, &mut all);
                 }
+                let run = format!("{what}, {samples} samples, {name}");
+                println!("{run}: {all:?}");
+                assert_eq!((all.lost, all.wrong), (0, 0), "{run} lost objects: {all:?}");
+                let least = 100 * worlds as usize;
+                assert!(all.hidden.min(all.visible) > least, "there are things to hide: {all:?}");
+                assert!(all.culled * 3 > all.hidden, "{run} culled little: {all:?}");
+                assert!(all.extra_submits <= 0, "{run} submits more than once a wave: {all:?}");
             }
         }
     }
@@ -125,7 +139,7 @@ fn pathological_worlds() {
         let mut all = Outcome::default();
         for (kind, seed) in Pathology::ALL.into_iter().zip(0..) {
             for &samples in gpu.sample_counts() {
-                let policy = policy::by_name("dual-query").expect("a policy of that name");
+                let policy = policy("dual-query");
                 let world = (worlds::pathological(kind), seed);
                 let target = (DepthFormat::Depth32Float, samples);
                 run(&gpu, &mut queries, policy, world, target, &mut all);
@@ -141,21 +155,26 @@ fn pathological_worlds() {
 #[test]
 fn lying_shaders_are_found_out() {
     let Some(gpu) = gpus().into_iter().next() else { return };
-    for counting in Counting::ALL {
-        let mut shaders = Shaders::default();
-        for shader in [&mut shaders.count_fragments, &mut shaders.count_workgroups, &mut shaders.count_blocks]
-        {
-            let lie = "nearness >= stored && pixel.x % 8u == 0u";
-            shader.single = shader.single.replace("nearness >= stored", lie).into();
-        }
-        let config = GpuConfig { counting: Some(counting), shaders, ..GpuConfig::default() };
+    let mut shaders = Shaders::default();
+    for shader in [&mut shaders.count_fragments, &mut shaders.count_workgroups, &mut shaders.count_blocks] {
+        let lie = "nearness >= stored && pixel.x % 8u == 0u";
+        shader.single = shader.single.replace("nearness >= stored", lie).into();
+    }
+    let lie = "if pixel.x % 8 != 0 || !covers";
+    shaders.ask_natively = shaders.ask_natively.replace("if !covers", lie).into();
+    let lying = GpuConfig { shaders, ..GpuConfig::default() };
+    let native = GpuConfig { any: AnyBy::Native, ..lying.clone() };
+    let counted = Counting::ALL.map(|counting| GpuConfig { counting: Some(counting), ..lying.clone() });
+    for (config, name) in
+        counted.map(|config| (config, "dual-query")).into_iter().chain([(native, "statistical")])
+    {
+        let what = format!("{:?}, any by {:?}", config.counting, config.any);
         let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
         let mut all = Outcome::default();
         for seed in 0..3 {
-            let policy = policy::by_name("dual-query").expect("a policy of that name");
-            let world = (worlds::random(seed, 120), seed);
-            run(&gpu, &mut queries, policy, world, (DepthFormat::Depth32Float, 1), &mut all);
+            let target = (DepthFormat::Depth32Float, 1);
+            run(&gpu, &mut queries, policy(name), (worlds::random(seed, 120), seed), target, &mut all);
         }
-        assert!(all.lost > 0 && all.wrong > 0, "{counting:?}: {all:?}");
+        assert!(all.lost > 0 && all.wrong > 0, "{what}: {all:?}");
     }
 }

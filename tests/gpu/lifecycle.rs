@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::{Mat4, Vec4};
 use tercet::Error;
 use tercet::geom::{DepthDirection, DepthFormat, PixelRect, View, Viewport, projection};
-use tercet::query::gpu::{ColorTarget, DepthTarget, FrameTargets, GpuConfig, GpuQueries};
+use tercet::query::gpu::{AnyBy, ColorTarget, DepthTarget, FrameTargets, GpuConfig, GpuQueries};
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 
 use crate::proxies::flat;
@@ -179,6 +179,37 @@ fn what_cannot_be_evaluated_is_unknown() {
         assert_eq!(found.len(), 4);
         assert!(found.iter().all(|(_, answer)| answer == "Unknown"), "{found:?}");
         queries.end().expect("end");
+    }
+}
+
+/// The device's own clock says what passes took, some frames later, and never waits.
+#[test]
+fn passes_are_timed_where_the_device_can() {
+    for gpu in gpus() {
+        let view = view();
+        let depth = depth_texture(&gpu, &view);
+        let walls = ClipSpace::new(&gpu, &view, &vec![wall(&view, 0.5); 200]);
+        let timed = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        for any in [AnyBy::Counts, AnyBy::Native] {
+            let mut queries = gpu.exact_queries(GpuConfig { any, ..GpuConfig::default() });
+            queries.target(&targets(&depth, false));
+            let mut times = Vec::new();
+            for _ in 0..6 {
+                queries.begin(&view).expect("begin");
+                times.push((queries.stats().draw_time, queries.stats().question_time));
+                queries.draw(|pass| walls.draw(pass)).expect("draw");
+                queries.ask(Ticket(1), &[flat(screen(), 0.6)], Want::Any).expect("ask");
+                answers(&mut queries, Wait::Block).expect("answers");
+                assert_eq!(queries.stats().submits, 1, "times cost no submission");
+                queries.end().expect("end");
+            }
+            assert_eq!(times[0], (None, None), "there was no frame before the first one");
+            let (draw, question) = times[5];
+            println!("{:?}, {any:?}: draw {draw:?}, questions {question:?}", gpu.backend);
+            assert_eq!((draw.is_some(), question.is_some()), (timed, timed));
+            let nothing = Some(Duration::ZERO);
+            assert!(!timed || draw > nothing && question > nothing, "{draw:?}, {question:?}");
+        }
     }
 }
 

@@ -5,44 +5,68 @@ use std::borrow::Cow;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use tercet::query::gpu::{Counting, GpuConfig, Shader, Shaders};
+use tercet::query::gpu::{AnyBy, Counting, GpuConfig, Shader, Shaders};
 
 use crate::support::gpus;
-use crate::twin::{Tally, conventions, round};
+use crate::twin::{Twin, conventions};
 
 /// A change of one shader, as text: what is replaced and by what.
 type Mutation = (&'static str, &'static str);
 
-/// Wherever the text occurs in the passes of one of the ways of counting.
-fn mutated(counting: Counting, (from, to): Mutation) -> Shaders {
+/// Who is broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Broken {
+    Counting(Counting),
+    Native,
+}
+
+/// The sources with the text replaced wherever it occurs in the passes of the one that is broken.
+fn mutated(broken: Broken, (from, to): Mutation) -> Shaders {
     let mut shaders = Shaders::default();
-    let passes = match counting {
-        Counting::Fragments => vec![&mut shaders.count_fragments],
-        Counting::Workgroups => vec![&mut shaders.count_workgroups],
-        Counting::Blocks => vec![&mut shaders.count_blocks, &mut shaders.gather_blocks],
+    let change = |source: &mut Cow<'static, str>| *source = Cow::Owned(source.replace(from, to));
+    let passes = match broken {
+        Broken::Native => {
+            change(&mut shaders.ask_natively);
+            vec![]
+        }
+        Broken::Counting(Counting::Fragments) => vec![&mut shaders.count_fragments],
+        Broken::Counting(Counting::Workgroups) => vec![&mut shaders.count_workgroups],
+        Broken::Counting(Counting::Blocks) => vec![&mut shaders.count_blocks, &mut shaders.gather_blocks],
     };
-    let change = |source: &Cow<'static, str>| Cow::Owned(source.replace(from, to));
-    for shader in passes {
-        *shader = Shader { single: change(&shader.single), multisampled: change(&shader.multisampled) };
+    for Shader { single, multisampled } in passes {
+        change(single);
+        change(multisampled);
     }
+    assert_ne!(format!("{shaders:?}"), format!("{:?}", Shaders::default()), "{from:?} occurs nowhere");
     shaders
 }
 
 #[test]
 fn wrong_shaders_are_found_out() {
     const SHARED: &[Mutation] = &[
-        ("nearness >= stored", "nearness > stored"),
-        ("nearness >= stored", "nearness <= stored"),
         ("edges[k], d) >= 0.0", "edges[k], d) >= 1.0"),
         ("k < 6u", "k < 5u"),
         ("k < 3u", "k < 2u"),
         ("+ 0.5", "+ 1.5"),
-        ("frame.origin + pixel", "pixel"),
         ("frame.sign * ", ""),
-        ("k < frame.samples", "k + 1u < frame.samples"),
         ("var nearness = (*proxy).nearest", "var nearness = 2.0"),
         ("min(nearness, affine", "max(nearness, affine"),
         ("f.y * d.y", "f.y * d.x"),
+    ];
+    const NATIVE: &[Mutation] = &[
+        ("f32(rect.x) - 0.25", "f32(rect.x) + 1.0"),
+        ("f32(rect.w) + 0.25", "f32(rect.w) - 1.0"),
+        ("- vec2<i32>(frame.origin)", ""),
+        ("pixel >= rect.zw", "pixel + 1 >= rect.zw"),
+        ("!covers(&proxy, d) || ", ""),
+        ("min(frame.sign, 0.0)", "0.0"),
+        ("0.0, 1.0)", "0.0, 0.5)"),
+    ];
+    const COUNTING: &[Mutation] = &[
+        ("nearness >= stored", "nearness > stored"),
+        ("nearness >= stored", "nearness <= stored"),
+        ("frame.origin + pixel", "pixel"),
+        ("k < frame.samples", "k + 1u < frame.samples"),
     ];
     const FRAGMENTS: &[Mutation] = &[
         ("rect.x, rect.z", "rect.x, rect.z - 1u"),
@@ -82,26 +106,31 @@ fn wrong_shaders_are_found_out() {
     ];
     // Those about several samples need an adapter that has them.
     let Some(gpu) = gpus().into_iter().find(|gpu| gpu.sample_counts().len() > 1) else { return };
-    for (counting, own) in
-        [(Counting::Fragments, FRAGMENTS), (Counting::Workgroups, WORKGROUPS), (Counting::Blocks, BLOCKS)]
-    {
-        for &mutation in SHARED.iter().chain(own) {
-            let shaders = mutated(counting, mutation);
-            let sources = |shaders: &Shaders| {
-                [false, true].map(|several| {
-                    [shaders.source(counting, several), shaders.gather_blocks_source(several)].concat()
-                })
+    let of = |counting, own: &[Mutation]| (Broken::Counting(counting), [COUNTING, own].concat());
+    for (broken, own) in [
+        of(Counting::Fragments, FRAGMENTS),
+        of(Counting::Workgroups, WORKGROUPS),
+        of(Counting::Blocks, BLOCKS),
+        (Broken::Native, NATIVE.to_vec()),
+    ] {
+        for &mutation in SHARED.iter().chain(&own) {
+            let shaders = mutated(broken, mutation);
+            let config = match broken {
+                Broken::Counting(counting) => {
+                    GpuConfig { counting: Some(counting), shaders, ..GpuConfig::default() }
+                }
+                Broken::Native => GpuConfig { any: AnyBy::Native, shaders, ..GpuConfig::default() },
             };
-            assert_ne!(sources(&shaders), sources(&Shaders::default()), "{mutation:?} changes nothing");
-            let config = GpuConfig { counting: Some(counting), shaders, ..GpuConfig::default() };
-            let mut queries = gpu.exact_queries(config);
-            let (mut dice, mut tally) = (ChaCha8Rng::seed_from_u64(11), Tally::default());
+            let windows = if broken == Broken::Native { 4 } else { 0 };
+            let mut twin = Twin::new(&gpu, [config], windows);
+            let mut dice = ChaCha8Rng::seed_from_u64(11);
             for convention in conventions(&gpu).into_iter().cycle().take(24) {
-                if tally.faults == 0 {
-                    round(&gpu, &mut queries, &mut dice, convention, &mut tally);
+                if twin.tally.faults == 0 {
+                    twin.round(&mut dice, convention);
                 }
             }
-            assert!(tally.faults > 0, "{counting:?} with {mutation:?} was not found out: {tally:?}");
+            let tally = twin.tally;
+            assert!(tally.faults > 0, "{broken:?} with {mutation:?} was not found out: {tally:?}");
         }
     }
 }

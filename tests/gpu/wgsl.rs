@@ -15,6 +15,7 @@ fn sources() -> Vec<String> {
         all.extend(Counting::ALL.map(|counting| shaders.source(counting, several).to_owned()));
         all.push(shaders.gather_blocks_source(several).to_owned());
     }
+    all.push(shaders.ask_natively.into_owned());
     all
 }
 
@@ -49,12 +50,18 @@ fn shaders_are_valid_and_portable() {
             entries += 1;
         }
     }
-    assert_eq!(entries, 10, "a vertex, a fragment and three compute stages, each twice");
+    assert_eq!(
+        entries, 12,
+        "a vertex, a fragment and three compute stages, each twice; two of native queries"
+    );
 }
 
 /// The Rust side starts stages by these names and sizes.
 #[test]
 fn entry_points_are_what_the_passes_start() {
+    let native = parse(&Shaders::default().ask_natively).entry_points;
+    let stages: Vec<_> = native.iter().map(|e| (e.name.as_str(), e.stage)).collect();
+    assert_eq!(stages, [("rectangle", ShaderStage::Vertex), ("sight", ShaderStage::Fragment)]);
     let of = |counting, several| parse(Shaders::default().source(counting, several)).entry_points;
     for several in [false, true] {
         let fragments = of(Counting::Fragments, several);

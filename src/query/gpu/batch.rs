@@ -1,14 +1,19 @@
 //! The questions of one pass with the buffers that they need, from upload to read-back.
 
 use std::num::NonZeroU64;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::ops::Range;
 
 use bytemuck::{Pod, cast_slice, try_cast_slice};
-use wgpu::{Buffer, BufferBinding, BufferDescriptor, BufferUsages, CommandEncoder, Device, MapMode, Queue};
+use wgpu::{
+    Buffer, BufferBinding, BufferDescriptor, BufferUsages, CommandEncoder, Device, QUERY_SET_MAX_QUERIES,
+    QuerySet, QuerySetDescriptor, QueryType, Queue,
+};
 
+use super::bind;
 use super::pack::{PackedCount, PackedProxy, PackedTile};
 use super::questions::Questions;
+use super::read_back::ReadBack;
+pub(super) use super::read_back::State;
 
 /// Buffers are reused from wave to wave: a batch belongs to one wave until its answers have been
 /// delivered, or are no longer awaited and have arrived.
@@ -18,24 +23,14 @@ pub(super) struct Batch {
     pub(super) proxies: Buffer,
     tiles: Buffer,
     counts: Buffer,
-    read_back: Buffer,
-    state: Arc<AtomicU8>,
-}
-
-/// How far a batch has got.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub(super) enum State {
-    /// Nobody's.
-    Free,
-    /// Its commands are recorded.
-    Recorded,
-    /// The device has it.
-    Submitted,
-    /// The counts can be read.
-    Arrived,
-    /// The counts will never come.
-    Lost,
+    /// Proxies of native queries.
+    pub(super) drawn: Buffer,
+    /// As many as there ever were queries, all but the last with the most that a set holds.
+    sets: Vec<QuerySet>,
+    /// What the queries found, 64 bits each.
+    resolved: Buffer,
+    /// Counts, and what the queries found after them.
+    read_back: ReadBack,
 }
 
 impl Batch {
@@ -46,23 +41,16 @@ impl Batch {
             proxies: buffer::<PackedProxy>(device, "tercet proxies", 64, storage | BufferUsages::VERTEX),
             tiles: buffer::<PackedTile>(device, "tercet tiles", 64, storage),
             counts: buffer::<PackedCount>(device, "tercet counts", 64, storage | BufferUsages::COPY_SRC),
-            read_back: buffer::<PackedCount>(device, "tercet read-back", 64, READ_BACK),
-            state: Arc::default(),
+            drawn: buffer::<PackedProxy>(device, "tercet drawn", 64, storage | BufferUsages::VERTEX),
+            sets: Vec::new(),
+            resolved: buffer::<PackedCount>(device, "tercet resolved", 64, RESOLVED),
+            read_back: ReadBack::new(device, bytes::<PackedCount>(64)),
         }
     }
 
+    /// How far it has got.
     pub(super) fn state(&self) -> State {
-        match self.state.load(Ordering::Acquire) {
-            0 => State::Free,
-            1 => State::Recorded,
-            2 => State::Submitted,
-            3 => State::Arrived,
-            _ => State::Lost,
-        }
-    }
-
-    fn set(&self, state: State) {
-        self.state.store(state as u8, Ordering::Release);
+        self.read_back.state()
     }
 
     /// Takes questions over and uploads them. The upload happens when the encoder is submitted.
@@ -71,12 +59,34 @@ impl Batch {
         grow::<PackedProxy>(device, &mut self.proxies, proxies);
         grow::<PackedTile>(device, &mut self.tiles, questions.tiles.len());
         grow::<PackedCount>(device, &mut self.counts, proxies);
-        grow::<PackedCount>(device, &mut self.read_back, proxies);
+        grow::<PackedProxy>(device, &mut self.drawn, questions.drawn.len());
+        grow::<PackedCount>(device, &mut self.resolved, questions.queries.len());
+        self.grow_sets(device, questions.queries.len());
         queue.write_buffer(&self.proxies, 0, cast_slice(&questions.proxies));
         queue.write_buffer(&self.tiles, 0, cast_slice(&questions.tiles));
+        queue.write_buffer(&self.drawn, 0, cast_slice(&questions.drawn));
         // What comes back in exchange is empty and has room.
         std::mem::swap(&mut self.questions, questions);
-        self.set(State::Recorded);
+        self.read_back.claim(device, self.result_bytes());
+    }
+
+    /// Makes room for a number of queries.
+    fn grow_sets(&mut self, device: &Device, queries: usize) {
+        let sets = queries.div_ceil(MOST_QUERIES);
+        for i in 0..sets {
+            // The last one of those in use may have been smaller.
+            let wanted = (queries - i * MOST_QUERIES).next_power_of_two().clamp(64, MOST_QUERIES) as u32;
+            if self.sets.get(i).is_some_and(|set| set.count() >= wanted) {
+                continue;
+            }
+            let label = Some("tercet queries");
+            let set = QuerySetDescriptor { label, ty: QueryType::Occlusion, count: wanted };
+            let set = device.create_query_set(&set);
+            match self.sets.get_mut(i) {
+                Some(old) => *old = set,
+                None => self.sets.push(set),
+            }
+        }
     }
 
     /// Records that all counts start at 0.
@@ -86,54 +96,51 @@ impl Batch {
 
     /// Records the way of the counts into memory that can be read.
     pub(super) fn copy_counts(&self, encoder: &mut CommandEncoder) {
-        encoder.copy_buffer_to_buffer(&self.counts, 0, &self.read_back, 0, self.count_bytes());
+        encoder.copy_buffer_to_buffer(&self.counts, 0, self.read_back.buffer(), 0, self.count_bytes());
     }
 
-    /// Asks for the counts; to be called when the commands have been submitted.
-    pub(super) fn await_counts(&self) {
-        self.set(State::Submitted);
-        let state = Arc::clone(&self.state);
-        self.read_back.map_async(MapMode::Read, 0..self.count_bytes(), move |result| {
-            let arrived = if result.is_ok() { State::Arrived } else { State::Lost };
-            state.store(arrived as u8, Ordering::Release);
-        });
+    /// Each set of native queries in use, with what its queries draw.
+    pub(super) fn query_sets(&self) -> impl Iterator<Item = (&QuerySet, &[Range<u32>])> {
+        self.sets.iter().zip(self.questions.queries.chunks(MOST_QUERIES))
     }
 
-    /// Hands the counts out, one a proxy, if they have arrived and can be read.
-    pub(super) fn read<R>(&self, read: impl FnOnce(&[PackedCount]) -> R) -> Option<R> {
-        if self.state() != State::Arrived {
-            return None;
+    /// Records the way of what the queries found into memory that can be read.
+    pub(super) fn resolve_queries(&self, encoder: &mut CommandEncoder) {
+        let mut at = 0;
+        for (set, queries) in self.query_sets() {
+            encoder.resolve_query_set(set, 0..queries.len() as u32, &self.resolved, at);
+            at += RESULT * queries.len() as u64;
         }
-        let view = self.read_back.get_mapped_range(0..self.count_bytes()).ok()?;
-        Some(read(try_cast_slice(&view).ok()?))
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, self.read_back.buffer(), self.counted_bytes(), at);
+    }
+
+    /// Asks for the results; to be called when the commands have been submitted.
+    pub(super) fn await_results(&self) {
+        self.read_back.await_bytes();
+    }
+
+    /// Hands the results out, one a proxy and one a native query, if they have arrived and can be
+    /// read.
+    pub(super) fn read<R>(&self, read: impl FnOnce(&[PackedCount]) -> R) -> Option<R> {
+        self.read_back.read(|bytes| try_cast_slice(bytes).ok().map(read))?
     }
 
     /// Nobody waits for it any more. One that is on its way is freed when it has arrived.
     pub(super) fn forget(&mut self) {
         self.questions.clear();
-        self.reclaim();
-        if self.state() == State::Recorded {
-            self.set(State::Free);
-        }
+        self.read_back.reclaim();
     }
 
-    /// Frees a batch that nobody waits for, if it has arrived; says whether it is free.
-    pub(super) fn reclaim(&mut self) -> bool {
-        if !self.questions.asked.is_empty() {
-            return false;
-        }
-        if self.state() == State::Arrived {
-            self.read_back.unmap();
-            self.set(State::Free);
-        }
-        self.state() == State::Free
+    /// Frees a batch that nobody waits for, if it is not on its way; says whether it is free.
+    pub(super) fn reclaim(&self) -> bool {
+        self.questions.asked.is_empty() && self.read_back.reclaim()
     }
 
     /// What is asked about, and no more: proxies, their counts and, on demand, their tiles.
     pub(super) fn bindings(&self, with_tiles: bool) -> Vec<(u32, BufferBinding<'_>)> {
         let Questions { proxies, tiles, .. } = &self.questions;
         let mut all = vec![
-            (0, binding::<PackedProxy>(&self.proxies, proxies.len())),
+            (bind::PROXIES, binding::<PackedProxy>(&self.proxies, proxies.len())),
             (1, binding::<PackedCount>(&self.counts, proxies.len())),
         ];
         if with_tiles {
@@ -142,12 +149,32 @@ impl Batch {
         all
     }
 
+    /// What native queries draw.
+    pub(super) fn native_bindings(&self) -> [(u32, BufferBinding<'_>); 1] {
+        [(bind::PROXIES, binding::<PackedProxy>(&self.drawn, self.questions.drawn.len()))]
+    }
+
     fn count_bytes(&self) -> u64 {
         bytes::<PackedCount>(self.questions.proxies.len())
     }
+
+    /// Where the results of queries begin.
+    fn counted_bytes(&self) -> u64 {
+        RESULT * self.questions.proxies.len() as u64
+    }
+
+    fn result_bytes(&self) -> u64 {
+        bytes::<PackedCount>(self.questions.proxies.len() + self.questions.queries.len())
+    }
 }
 
-const READ_BACK: BufferUsages = BufferUsages::MAP_READ.union(BufferUsages::COPY_DST);
+/// The most queries that a set holds.
+const MOST_QUERIES: usize = QUERY_SET_MAX_QUERIES as usize;
+
+/// The bytes of a result: a count, or what a query found.
+const RESULT: u64 = size_of::<PackedCount>() as u64;
+
+const RESOLVED: BufferUsages = BufferUsages::QUERY_RESOLVE.union(BufferUsages::COPY_SRC);
 
 /// The size of a number of elements; no buffer is bound, copied or mapped with none.
 fn bytes<T: Pod>(count: usize) -> u64 {

@@ -7,6 +7,27 @@ use wgpu::{
     TextureViewDimension,
 };
 
+/// The binding of the proxies, wherever they are read.
+pub(super) const PROXIES: u32 = 0;
+
+/// How a pass uses the depth of the app.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DepthAs {
+    /// It loads texels of one sample.
+    Texture,
+    /// It loads texels of several samples.
+    Multisampled,
+    /// The depth test reads it: nothing is bound.
+    Attachment,
+}
+
+impl DepthAs {
+    /// What a counting pass reads.
+    pub(super) fn texture(multisampled: bool) -> Self {
+        if multisampled { Self::Multisampled } else { Self::Texture }
+    }
+}
+
 /// The layouts of a pass.
 #[derive(Debug)]
 pub(super) struct Layouts {
@@ -29,22 +50,19 @@ impl Layouts {
         device: &Device,
         frame_stages: ShaderStages,
         buffers: &[(u32, bool)],
-        multisampled: bool,
+        depth: DepthAs,
     ) -> Self {
         let counting = frame_stages.difference(ShaderStages::VERTEX);
-        let frame = [
-            entry(0, frame_stages, buffer(BufferBindingType::Uniform)),
-            entry(
-                1,
-                counting,
-                BindingType::Texture {
-                    // Depth as plain numbers: depth textures cannot be loaded from on OpenGL.
-                    sample_type: TextureSampleType::Float { filterable: false },
-                    view_dimension: TextureViewDimension::D2,
-                    multisampled,
-                },
-            ),
-        ];
+        let mut frame = vec![entry(0, frame_stages, buffer(BufferBindingType::Uniform))];
+        if depth != DepthAs::Attachment {
+            let texture = BindingType::Texture {
+                // Depth as plain numbers: depth textures cannot be loaded from on OpenGL.
+                sample_type: TextureSampleType::Float { filterable: false },
+                view_dimension: TextureViewDimension::D2,
+                multisampled: depth == DepthAs::Multisampled,
+            };
+            frame.push(entry(1, counting, texture));
+        }
         let storage = |&(binding, written): &(u32, bool)| {
             entry(binding, counting, buffer(BufferBindingType::Storage { read_only: !written }))
         };
@@ -62,17 +80,16 @@ impl Layouts {
     }
 }
 
-/// Binds a frame.
+/// Binds a frame; the depth for passes that bind it.
 pub(super) fn frame(
     device: &Device,
     layout: &BindGroupLayout,
     uniforms: &Buffer,
-    depth: &TextureView,
+    depth: Option<&TextureView>,
 ) -> BindGroup {
-    let entries = [
-        BindGroupEntry { binding: 0, resource: uniforms.as_entire_binding() },
-        BindGroupEntry { binding: 1, resource: BindingResource::TextureView(depth) },
-    ];
+    let mut entries = vec![BindGroupEntry { binding: 0, resource: uniforms.as_entire_binding() }];
+    let texture = |view| BindGroupEntry { binding: 1, resource: BindingResource::TextureView(view) };
+    entries.extend(depth.map(texture));
     device.create_bind_group(&BindGroupDescriptor { label: Some("tercet frame"), layout, entries: &entries })
 }
 

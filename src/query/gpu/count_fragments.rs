@@ -6,15 +6,16 @@
 use std::mem::offset_of;
 
 use wgpu::{
-    Color, ColorTargetState, ColorWrites, CommandEncoder, Device, Extent3d, FragmentState, LoadOp,
-    Operations, PrimitiveState, PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor,
-    RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderStages, StoreOp, TextureDescriptor,
-    TextureDimension, TextureFormat, TextureUsages, TextureView, VertexAttribute, VertexBufferLayout,
-    VertexFormat, VertexState, VertexStepMode,
+    Color, ColorTargetState, ColorWrites, Device, Extent3d, FragmentState, LoadOp, Operations,
+    PrimitiveState, PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+    RenderPipelineDescriptor, ShaderModule, ShaderStages, StoreOp, TextureDescriptor, TextureDimension,
+    TextureFormat, TextureUsages, TextureView, VertexAttribute, VertexBufferLayout, VertexFormat,
+    VertexState, VertexStepMode,
 };
 
 use super::batch::Batch;
 use super::bind::{Bound, Layouts};
+use super::clock::{Purpose, Tape};
 use super::pack::PackedProxy;
 use crate::geom::Viewport;
 
@@ -74,8 +75,7 @@ impl CountFragments {
 
     pub(super) fn record(
         &mut self,
-        device: &Device,
-        encoder: &mut CommandEncoder,
+        tape: &mut Tape<'_>,
         bound: &Bound<'_>,
         batch: &Batch,
         viewport: Viewport,
@@ -83,7 +83,7 @@ impl CountFragments {
         let size = Viewport::new(viewport.width, viewport.height);
         let canvas = match &self.canvas {
             Some((canvas, had)) if *had == size => canvas,
-            _ => &self.canvas.insert((canvas(device, size), size)).0,
+            _ => &self.canvas.insert((canvas(tape.device, size), size)).0,
         };
         let attachment = RenderPassColorAttachment {
             view: canvas,
@@ -91,11 +91,13 @@ impl CountFragments {
             resolve_target: None,
             ops: Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Discard },
         };
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+        let attachments = [Some(attachment)];
+        let descriptor = RenderPassDescriptor {
             label: Some("tercet count fragments"),
-            color_attachments: &[Some(attachment)],
+            color_attachments: &attachments,
             ..Default::default()
-        });
+        };
+        let mut pass = tape.render_pass(Purpose::Question, descriptor);
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, bound.frame, &[]);
         pass.set_bind_group(1, bound.batch, &[]);

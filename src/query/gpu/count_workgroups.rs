@@ -1,13 +1,11 @@
 //! Counting in a compute shader: a workgroup for each tile of each proxy's rectangle. Sample by
 //! sample or block by block, the pass is the same; the shader and what it binds differ.
 
-use wgpu::{
-    CommandEncoder, ComputePassDescriptor, ComputePipeline, ComputePipelineDescriptor, Device, ShaderModule,
-    ShaderStages,
-};
+use wgpu::{ComputePipeline, ComputePipelineDescriptor, Device, ShaderModule, ShaderStages};
 
 use super::batch::Batch;
 use super::bind::{Bound, Layouts};
+use super::clock::Tape;
 
 /// The pass.
 #[derive(Debug)]
@@ -38,13 +36,11 @@ impl CountWorkgroups {
         Self { pipeline, most_groups: device.limits().max_compute_workgroups_per_dimension }
     }
 
-    pub(super) fn record(&self, encoder: &mut CommandEncoder, bound: &Bound<'_>, batch: &Batch) {
+    pub(super) fn record(&self, tape: &mut Tape<'_>, bound: &Bound<'_>, batch: &Batch) {
         let tiles = batch.questions.tiles.len() as u32;
         let rows = tiles.div_ceil(self.most_groups);
         let columns = tiles.div_ceil(rows);
-        let descriptor =
-            ComputePassDescriptor { label: Some("tercet count workgroups"), ..Default::default() };
-        let mut pass = encoder.begin_compute_pass(&descriptor);
+        let mut pass = tape.compute_pass("tercet count workgroups");
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, bound.frame, &[]);
         pass.set_bind_group(1, bound.batch, &[]);

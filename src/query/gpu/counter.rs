@@ -1,12 +1,10 @@
 //! The ways of counting, behind one door.
 
-use wgpu::{
-    BindGroup, Buffer, CommandEncoder, Device, ShaderModule, ShaderModuleDescriptor, ShaderSource,
-    TextureView,
-};
+use wgpu::{BindGroup, Buffer, Device, ShaderModule, ShaderModuleDescriptor, ShaderSource, TextureView};
 
 use super::batch::Batch;
-use super::bind::{self, Bound, Layouts};
+use super::bind::{self, Bound, DepthAs, Layouts};
+use super::clock::Tape;
 use super::count_fragments::CountFragments;
 use super::count_workgroups::CountWorkgroups;
 use super::gather_blocks::{self, GatherBlocks};
@@ -75,7 +73,7 @@ impl Counters {
 
     /// Binds a frame's view and depth, for both.
     pub(super) fn bind_frame(&self, device: &Device, uniforms: &Buffer, depth: &TextureView) -> BindGroup {
-        bind::frame(device, &self.few.layouts.frame, uniforms, depth)
+        bind::frame(device, &self.few.layouts.frame, uniforms, Some(depth))
     }
 
     /// To be called when the depth may have changed.
@@ -90,13 +88,12 @@ impl Counters {
     /// Records the counting of a batch, from zeroed counts to the copy that can be read.
     pub(super) fn record(
         &mut self,
-        device: &Device,
-        encoder: &mut CommandEncoder,
+        tape: &mut Tape<'_>,
         frame: &BindGroup,
         batch: &Batch,
         viewport: Viewport,
     ) {
-        batch.clear_counts(encoder);
+        batch.clear_counts(tape.encoder);
         if !batch.questions.proxies.is_empty() {
             // Gathering looks at each pixel of the viewport, at less than half the cost of counting.
             let pixels = u64::from(viewport.width) * u64::from(viewport.height);
@@ -104,9 +101,9 @@ impl Counters {
                 Some(many) if 2 * batch.questions.pixels >= pixels => many,
                 _ => &mut self.few,
             };
-            counter.record(device, encoder, frame, batch, viewport);
+            counter.record(tape, frame, batch, viewport);
         }
-        batch.copy_counts(encoder);
+        batch.copy_counts(tape.encoder);
     }
 }
 
@@ -141,7 +138,8 @@ impl Counter {
         }
         guarded(device, || {
             let module = compiled(device, shaders.source(counting, multisampled));
-            let layouts = |stages, buffers: &[_]| Layouts::new(device, stages, buffers, multisampled);
+            let depth = DepthAs::texture(multisampled);
+            let layouts = |stages, buffers: &[_]| Layouts::new(device, stages, buffers, depth);
             match counting {
                 Counting::Fragments => {
                     let layouts = layouts(CountFragments::STAGES, CountFragments::BUFFERS);
@@ -157,7 +155,7 @@ impl Counter {
                     let buffers = [CountWorkgroups::BUFFERS, &[(gather_blocks::BINDING, false)]].concat();
                     let layouts = layouts(CountWorkgroups::STAGES, &buffers);
                     let gather = compiled(device, shaders.gather_blocks_source(multisampled));
-                    let gather = GatherBlocks::new(device, &gather, multisampled);
+                    let gather = GatherBlocks::new(device, &gather, depth);
                     let count = CountWorkgroups::new(device, &layouts, &module);
                     Self { layouts, pass: Pass::Blocks { gather, count, stale: true } }
                 }
@@ -165,39 +163,33 @@ impl Counter {
         })
     }
 
-    fn record(
-        &mut self,
-        device: &Device,
-        encoder: &mut CommandEncoder,
-        frame: &BindGroup,
-        batch: &Batch,
-        viewport: Viewport,
-    ) {
+    fn record(&mut self, tape: &mut Tape<'_>, frame: &BindGroup, batch: &Batch, viewport: Viewport) {
+        let device = tape.device;
         let bind = |buffers: &[_]| bind::storage(device, &self.layouts.batch, buffers);
         match &mut self.pass {
             Pass::Fragments(pass) => {
                 let bindings = bind(&batch.bindings(false));
-                pass.record(device, encoder, &Bound { frame, batch: &bindings }, batch, viewport);
+                pass.record(tape, &Bound { frame, batch: &bindings }, batch, viewport);
             }
             Pass::Workgroups(pass) => {
                 let bindings = bind(&batch.bindings(true));
-                pass.record(encoder, &Bound { frame, batch: &bindings }, batch);
+                pass.record(tape, &Bound { frame, batch: &bindings }, batch);
             }
             Pass::Blocks { gather, count, stale } => {
                 gather.resize(device, viewport);
                 if std::mem::take(stale) {
-                    gather.record(encoder, frame);
+                    gather.record(tape, frame);
                 }
                 let mut buffers = batch.bindings(true);
                 buffers.extend(gather.binding().map(|blocks| (gather_blocks::BINDING, blocks)));
                 let bindings = bind(&buffers);
-                count.record(encoder, &Bound { frame, batch: &bindings }, batch);
+                count.record(tape, &Bound { frame, batch: &bindings }, batch);
             }
         }
     }
 }
 
-fn compiled(device: &Device, source: &str) -> ShaderModule {
+pub(super) fn compiled(device: &Device, source: &str) -> ShaderModule {
     let source = ShaderSource::Wgsl(source.into());
     device.create_shader_module(ShaderModuleDescriptor { label: Some("tercet count"), source })
 }

@@ -3,9 +3,12 @@
 use std::time::Instant;
 
 use bytemuck::bytes_of;
-use wgpu::{BindGroup, CommandEncoder, RenderPass, SubmissionIndex};
+use wgpu::{BindGroup, CommandEncoder, CommandEncoderDescriptor, Device, RenderPass, SubmissionIndex};
 
+use super::ask_natively::{self, AskNatively};
 use super::batch::{Batch, State};
+use super::bind;
+use super::clock::{Clock, Tape};
 use super::counter::Counters;
 use super::pack::PackedFrame;
 use super::questions::Terms;
@@ -22,6 +25,8 @@ pub(super) struct Frame {
     targets: FrameTargets,
     pub(super) terms: Terms,
     bindings: BindGroup,
+    /// The same for native queries, if there are any.
+    native_bindings: Option<BindGroup>,
     /// What was recorded since the last submission.
     encoder: Option<CommandEncoder>,
     /// Whether a pass has cleared the attachments, or loaded them for the first time.
@@ -44,15 +49,21 @@ impl GpuQueries {
             }
         };
         counters.depth_changed();
-        let bindings = guard::guarded(&self.device, || {
+        self.clock.iter_mut().for_each(Clock::begin_frame);
+        let (bindings, native_bindings) = guard::guarded(&self.device, || {
             self.queue.write_buffer(&self.uniforms, 0, bytes_of(&PackedFrame::new(view)));
-            counters.bind_frame(&self.device, &self.uniforms, targets.readable_depth())
+            let bind =
+                |pass: &AskNatively| bind::frame(&self.device, &pass.layouts.frame, &self.uniforms, None);
+            let counting = counters.bind_frame(&self.device, &self.uniforms, targets.readable_depth());
+            (counting, self.native.as_ref().map(bind))
         })?;
+        let native_slack = self.native.as_ref().map(|_| ask_natively::slack(view.format()));
         self.frame = Some(Frame {
             view: view.clone(),
             targets,
-            terms: Terms::new(view.viewport(), self.slack, &self.device.limits()),
+            terms: Terms::new(view, self.slack, native_slack, &self.device.limits()),
             bindings,
+            native_bindings,
             encoder: None,
             opened: false,
             last_submission: None,
@@ -65,7 +76,7 @@ impl GpuQueries {
         self.stats.draw_passes += 1;
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
         self.counters.iter_mut().flatten().for_each(Counters::depth_changed);
-        Ok(frame.pass(&self.device, false))
+        Ok(frame.pass(&self.device, &mut self.clock, false))
     }
 
     /// Records the counting of all questions that are open.
@@ -75,7 +86,7 @@ impl GpuQueries {
             return Ok(());
         }
         if !frame.opened {
-            drop(frame.pass(&self.device, false));
+            drop(frame.pass(&self.device, &mut self.clock, false));
         }
         let counters = self.counters[usize::from(frame.view.samples() > 1)].as_mut();
         let counters = counters.expect("they were made when the frame began");
@@ -84,8 +95,13 @@ impl GpuQueries {
             let batch = free(&mut self.batches, &self.device);
             batch.load(&self.device, &self.queue, &mut self.open);
             let viewport = frame.view.viewport();
-            let encoder = frame.encoder.get_or_insert_with(|| encoder(&self.device));
-            counters.record(&self.device, encoder, &frame.bindings, batch, viewport);
+            let mut tape = tape(&mut frame.encoder, &self.device, &mut self.clock);
+            counters.record(&mut tape, &frame.bindings, batch, viewport);
+            let native = self.native.as_mut().filter(|_| !batch.questions.queries.is_empty());
+            if let (Some(native), Some(bindings)) = (native, &frame.native_bindings) {
+                let depth = &frame.targets.depth.view;
+                native.record(&mut tape, bindings, batch, (&frame.view, depth));
+            }
         })
     }
 
@@ -109,7 +125,7 @@ impl GpuQueries {
     pub(super) fn finish_frame(&mut self) -> Result<(), Error> {
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
         if !frame.opened || frame.targets.resolves() {
-            drop(frame.pass(&self.device, true));
+            drop(frame.pass(&self.device, &mut self.clock, true));
         }
         self.submit()
     }
@@ -120,14 +136,20 @@ impl GpuQueries {
         let Some(encoder) = frame.encoder.take() else { return Ok(()) };
         self.stats.submits += 1;
         // The app's own mistakes in a pass come to light when its recording is finished.
-        let commands = guard::guarded(&self.device, || encoder.finish())?;
-        let index = guard::guarded(&self.device, || {
-            let index = self.queue.submit([commands]);
-            let recorded = self.batches.iter().filter(|batch| batch.state() == State::Recorded);
-            recorded.for_each(Batch::await_counts);
-            index
-        })?;
-        frame.last_submission = Some(index);
+        let finished = guard::guarded(&self.device, || encoder.finish());
+        let submitted = finished.and_then(|commands| {
+            guard::guarded(&self.device, || {
+                let index = self.queue.submit([commands]);
+                let recorded = self.batches.iter().filter(|batch| batch.state() == State::Recorded);
+                recorded.for_each(Batch::await_results);
+                self.clock.iter_mut().for_each(Clock::submitted);
+                index
+            })
+        });
+        if submitted.is_err() {
+            self.clock.iter_mut().for_each(Clock::dropped);
+        }
+        frame.last_submission = Some(submitted?);
         Ok(())
     }
 
@@ -151,16 +173,16 @@ impl GpuQueries {
 }
 
 impl Frame {
-    fn pass(&mut self, device: &wgpu::Device, last: bool) -> RenderPass<'static> {
+    fn pass(&mut self, device: &Device, clock: &mut Option<Clock>, last: bool) -> RenderPass<'static> {
         let first = !std::mem::replace(&mut self.opened, true);
-        let encoder = self.encoder.get_or_insert_with(|| encoder(device));
-        self.targets.pass(encoder, &self.view, Kind { first, last })
+        let mut tape = tape(&mut self.encoder, device, clock);
+        self.targets.pass(&mut tape, &self.view, Kind { first, last })
     }
 }
 
 /// A batch that nobody uses.
-fn free<'a>(batches: &'a mut Vec<Batch>, device: &wgpu::Device) -> &'a mut Batch {
-    let found = batches.iter_mut().position(Batch::reclaim);
+fn free<'a>(batches: &'a mut Vec<Batch>, device: &Device) -> &'a mut Batch {
+    let found = batches.iter_mut().position(|batch| batch.reclaim());
     let index = found.unwrap_or(batches.len());
     if found.is_none() {
         batches.push(Batch::new(device));
@@ -168,8 +190,22 @@ fn free<'a>(batches: &'a mut Vec<Batch>, device: &wgpu::Device) -> &'a mut Batch
     &mut batches[index]
 }
 
-fn encoder(device: &wgpu::Device) -> CommandEncoder {
-    device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("tercet") })
+/// What was recorded since the last submission, to be recorded on.
+fn tape<'a>(
+    encoder: &'a mut Option<CommandEncoder>,
+    device: &'a Device,
+    clock: &'a mut Option<Clock>,
+) -> Tape<'a> {
+    let mut clock = clock.as_mut();
+    let encoder = encoder.get_or_insert_with(|| {
+        let descriptor = CommandEncoderDescriptor { label: Some("tercet") };
+        let mut encoder = device.create_command_encoder(&descriptor);
+        if let Some(clock) = &mut clock {
+            clock.read_back(device, &mut encoder);
+        }
+        encoder
+    });
+    Tape { device, encoder, clock }
 }
 
 pub(super) fn not_begun() -> Error {

@@ -2,11 +2,12 @@
 //! [`Counting::Blocks`](super::Counting::Blocks).
 
 use wgpu::{
-    BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor,
-    ComputePipeline, ComputePipelineDescriptor, Device, ShaderModule,
+    BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, ComputePipeline,
+    ComputePipelineDescriptor, Device, ShaderModule,
 };
 
-use super::bind::{self, Layouts};
+use super::bind::{self, DepthAs, Layouts};
+use super::clock::Tape;
 use super::count_workgroups::CountWorkgroups;
 use super::pack::BLOCK;
 use crate::geom::Viewport;
@@ -24,8 +25,8 @@ pub(super) struct GatherBlocks {
 }
 
 impl GatherBlocks {
-    pub(super) fn new(device: &Device, module: &ShaderModule, multisampled: bool) -> Self {
-        let layouts = Layouts::new(device, CountWorkgroups::STAGES, &[(BINDING, true)], multisampled);
+    pub(super) fn new(device: &Device, module: &ShaderModule, depth: DepthAs) -> Self {
+        let layouts = Layouts::new(device, CountWorkgroups::STAGES, &[(BINDING, true)], depth);
         let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
             label: Some("tercet gather blocks"),
             layout: Some(&layouts.pipeline),
@@ -60,12 +61,11 @@ impl GatherBlocks {
     }
 
     /// Records the gathering from the depth of a frame.
-    pub(super) fn record(&self, encoder: &mut CommandEncoder, frame: &BindGroup) {
+    pub(super) fn record(&self, tape: &mut Tape<'_>, frame: &BindGroup) {
         /// Invocations along each side of a workgroup, as the shader has them.
         const SIDE: u32 = 8;
         let Some((_, bindings, [columns, rows])) = &self.blocks else { return };
-        let descriptor = ComputePassDescriptor { label: Some("tercet gather blocks"), ..Default::default() };
-        let mut pass = encoder.begin_compute_pass(&descriptor);
+        let mut pass = tape.compute_pass("tercet gather blocks");
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, frame, &[]);
         pass.set_bind_group(1, bindings, &[]);

@@ -37,9 +37,10 @@
 //! | `targets` | what the app draws into, and the passes on it |
 //! | `questions`, `pack` | what was asked, as the shaders read it |
 //! | `counter`, `bind` | the ways of counting, behind one door |
-//! | `count_fragments`, `count_workgroups`, `gather_blocks` | one pass each |
+//! | `count_fragments`, `count_workgroups`, `gather_blocks`, `ask_natively` | one pass each |
 //! | `frame` | passes are recorded, submitted once a wave, and waited for |
-//! | `batch` | buffers of a question pass, from upload to read-back |
+//! | `batch`, `read_back` | buffers of a question pass, from upload to read-back |
+//! | `clock` | what passes take, by the device's own clock |
 //! | `shaders` | sources; the files are in `shaders/` |
 //! | `guard` | what the device reports, as errors instead of panics |
 //!
@@ -55,8 +56,10 @@
 //! brought nearer by as much (`pack.rs`), and with reversed z the farthest things are not culled.
 //! Multisampled depth is refused: wgpu 30 cannot make a texture of it that can be read.
 
+mod ask_natively;
 mod batch;
 mod bind;
+mod clock;
 mod count_fragments;
 mod count_workgroups;
 mod counter;
@@ -65,6 +68,7 @@ mod gather_blocks;
 mod guard;
 mod pack;
 mod questions;
+mod read_back;
 mod shaders;
 mod targets;
 
@@ -82,15 +86,30 @@ pub use targets::{ColorTarget, DepthTarget, FrameTargets};
 use super::{Answer, QueryBackend, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
+use ask_natively::AskNatively;
 use batch::Batch;
+use clock::Clock;
 use counter::Counters;
 use frame::Frame;
 use pack::{EMULATED_RANGE, PackedFrame};
 use questions::Questions;
 
+/// Who answers [`Want::Any`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum AnyBy {
+    /// The shaders that count, which stop at the first visible sample where they can.
+    #[default]
+    Counts,
+    /// Native occlusion queries, one a question. They find visible whatever counting does, and
+    /// hardly more: with a depth of 24 bits, what lies two units behind what is stored.
+    Native,
+}
+
 /// The dials of [`GpuQueries`].
 #[derive(Clone, Debug)]
 pub struct GpuConfig {
+    /// Who answers [`Want::Any`]; [`Want::Dual`] is always counted.
+    pub any: AnyBy,
     /// How samples are counted; None for the best that the device supports: questions about many
     /// pixels by [`Counting::Blocks`], about few by [`Counting::Workgroups`].
     pub counting: Option<Counting>,
@@ -107,6 +126,7 @@ pub struct GpuConfig {
 impl Default for GpuConfig {
     fn default() -> Self {
         Self {
+            any: AnyBy::default(),
             counting: None,
             timeout: Duration::from_secs(10),
             depth_slack: None,
@@ -115,7 +135,7 @@ impl Default for GpuConfig {
     }
 }
 
-/// Counters since [`QueryBackend::begin`].
+/// Counters since [`QueryBackend::begin`], and times of an earlier frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuStats {
     /// Passes opened for the app's draws.
@@ -126,6 +146,12 @@ pub struct GpuStats {
     pub boxes: u64,
     /// Submissions to the queue.
     pub submits: u64,
+    /// What the device took for the app's draw passes, of the last frame whose timestamps had
+    /// arrived when this one began: seldom the one before this. None if none have, if the device
+    /// has not [`Features::TIMESTAMP_QUERY`], and for frames of more than 1024 passes.
+    pub draw_time: Option<Duration>,
+    /// The same for the passes that answer questions.
+    pub question_time: Option<Duration>,
 }
 
 /// The GPU backend: it draws into the app's attachments and asks about what is there.
@@ -142,6 +168,8 @@ pub struct GpuQueries {
     slack: f32,
     /// For targets with one sample a pixel and with several.
     counters: [Option<Counters>; 2],
+    native: Option<AskNatively>,
+    clock: Option<Clock>,
     uniforms: Buffer,
     targets: Option<FrameTargets>,
     frame: Option<Frame>,
@@ -169,6 +197,13 @@ impl GpuQueries {
         let api_slack = if backend == Backend::Gl { EMULATED_RANGE } else { 0.0 };
         let slack = config.depth_slack.unwrap_or(api_slack);
         let counters = Counters::new(device, config.counting, &config.shaders, false)?;
+        let native = (config.any == AnyBy::Native)
+            .then(|| {
+                guard::guarded(device, || {
+                    AskNatively::new(device, counter::compiled(device, &config.shaders.ask_natively))
+                })
+            })
+            .transpose()?;
         let uniforms = guard::guarded(device, || {
             device.create_buffer(&BufferDescriptor {
                 label: Some("tercet frame"),
@@ -184,6 +219,8 @@ impl GpuQueries {
             backend,
             slack,
             counters: [Some(counters), None],
+            native,
+            clock: guard::guarded(device, || Clock::new(device, queue))?,
             uniforms,
             targets: None,
             frame: None,
@@ -193,10 +230,10 @@ impl GpuQueries {
         })
     }
 
-    /// The optional features that a device should be asked for, of those that the adapter has:
-    /// none so far.
-    pub fn wanted_features(_adapter: &Adapter) -> Features {
-        Features::empty()
+    /// The optional features that a device should be asked for, of those that the adapter has.
+    /// Without them everything works, but for the times in [`GpuStats`].
+    pub fn wanted_features(adapter: &Adapter) -> Features {
+        adapter.features() & Features::TIMESTAMP_QUERY
     }
 
     /// Says what the next frames draw into. They are checked when a frame begins.
@@ -204,9 +241,10 @@ impl GpuQueries {
         self.targets = Some(targets.clone());
     }
 
-    /// Counters since the frame began.
+    /// Counters since the frame began, and times of an earlier one.
     pub fn stats(&self) -> GpuStats {
-        self.stats
+        let times = self.clock.as_ref().and_then(Clock::times);
+        GpuStats { draw_time: times.map(|t| t.draw), question_time: times.map(|t| t.question), ..self.stats }
     }
 
     /// Everything that is open will not be answered.

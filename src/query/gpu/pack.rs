@@ -60,7 +60,7 @@ pub(super) struct PackedProxy {
     pub(super) rect: [u32; 4],
     edges: [[f32; 4]; 6],
     planes: [[f32; 4]; 3],
-    nearest: f32,
+    pub(super) nearest: f32,
     any: u32,
     unused: [u32; 2],
 }
@@ -129,7 +129,7 @@ pub(super) struct PackedTile {
 
 /// What comes back for a proxy.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub(super) struct PackedCount {
     pub(super) visible: u32,
     pub(super) total: u32,

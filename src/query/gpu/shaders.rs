@@ -31,6 +31,8 @@ pub struct Shaders {
     pub count_blocks: Shader,
     /// What [`Counting::Blocks`] gathers first.
     pub gather_blocks: Shader,
+    /// [`AnyBy::Native`](super::AnyBy::Native), for any number of samples.
+    pub ask_natively: Cow<'static, str>,
 }
 
 impl Shaders {
@@ -75,6 +77,10 @@ impl Default for Shaders {
             count_workgroups: shader!("shared/tiles.wgsl", "count_workgroups.wgsl"),
             count_blocks: shader!("shared/tiles.wgsl", "count_blocks.wgsl"),
             gather_blocks: shader!("gather_blocks.wgsl"),
+            ask_natively: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/question.wgsl"),
+                include_str!("../../../shaders/ask_natively.wgsl"),
+            )),
         }
     }
 }

@@ -1,11 +1,12 @@
 //! What the app draws into, and the passes on it.
 
 use wgpu::{
-    Backend, Color, CommandEncoder, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
+    Backend, Color, LoadOp, Operations, RenderPass, RenderPassColorAttachment,
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureFormat, TextureUsages,
     TextureView,
 };
 
+use super::clock::{Purpose, Tape};
 use crate::Error;
 use crate::geom::{DepthFormat, View, Viewport};
 
@@ -114,7 +115,7 @@ impl FrameTargets {
     }
 
     /// Opens a pass on all attachments.
-    pub(super) fn pass(&self, encoder: &mut CommandEncoder, view: &View, kind: Kind) -> RenderPass<'static> {
+    pub(super) fn pass(&self, tape: &mut Tape<'_>, view: &View, kind: Kind) -> RenderPass<'static> {
         let colors: Vec<_> =
             self.colors.iter().map(|color| color.as_ref().map(|c| c.attachment(kind))).collect();
         let descriptor = RenderPassDescriptor {
@@ -123,7 +124,7 @@ impl FrameTargets {
             depth_stencil_attachment: Some(self.depth.attachment(view, kind)),
             ..RenderPassDescriptor::default()
         };
-        let mut pass = encoder.begin_render_pass(&descriptor).forget_lifetime();
+        let mut pass = tape.render_pass(Purpose::Draw, descriptor).forget_lifetime();
         let Viewport { x, y, width, height } = view.viewport();
         pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
         pass
