@@ -119,3 +119,86 @@ fn unite(sides: &mut [u32], a: u32, b: u32) {
     let (a, b) = (first(sides, a), first(sides, b));
     sides[a.max(b) as usize] = a.min(b);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::worlds::teapot_mesh;
+
+    fn level(positions: Vec<Vec3>, indices: Vec<u32>) -> Level {
+        Level { positions, indices, error: 0.0 }
+    }
+
+    fn normal(vertex: &Vertex) -> Vec3 {
+        Vec3::from_array([0, 1, 2].map(|i| f32::from(vertex.normal[i]) / 32767.0))
+    }
+
+    /// Every corner stays where it was, to the bit.
+    fn assert_same_corners(level: &Level, vertices: &[Vertex], indices: &[u32]) {
+        assert_eq!(indices.len(), level.indices.len());
+        for (&new, &old) in indices.iter().zip(&level.indices) {
+            let (new, old) = (vertices[new as usize].position, level.positions[old as usize].to_array());
+            assert_eq!(new.map(f32::to_bits), old.map(f32::to_bits));
+        }
+    }
+
+    /// A roof over the x axis: two sides that share the ridge and meet at an angle.
+    fn roof(degrees: f32) -> Level {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.0, 1.0), Vec3::new(0.5, -sin, -cos)];
+        level(positions, vec![1, 0, 2, 0, 1, 3])
+    }
+
+    #[test]
+    fn steep_edges_are_sharp_and_gentle_ones_smooth() {
+        let smooth = roof(30.0);
+        let (vertices, indices) = with_normals(&smooth);
+        assert_same_corners(&smooth, &vertices, &indices);
+        assert_eq!(vertices.len(), 4);
+        let ridge = normal(&vertices[indices[0] as usize]);
+        assert!((ridge.y.abs() - 15f32.to_radians().cos()).abs() < 1e-3, "{ridge}");
+        let sharp = roof(50.0);
+        let (vertices, indices) = with_normals(&sharp);
+        assert_same_corners(&sharp, &vertices, &indices);
+        assert_eq!(vertices.len(), 6);
+        assert!((normal(&vertices[indices[0] as usize]).y.abs() - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn points_that_coincide_are_one() {
+        let whole = roof(30.0);
+        let corners: Vec<Vec3> = whole.indices.iter().map(|&i| whole.positions[i as usize]).collect();
+        let loose = level(corners, (0..6).collect());
+        assert_eq!(with_normals(&loose), with_normals(&whole));
+    }
+
+    #[test]
+    fn neighbours_that_wind_differently_keep_their_own_normals() {
+        let mut mixed = roof(30.0);
+        mixed.indices.swap(4, 5);
+        let (vertices, indices) = with_normals(&mixed);
+        assert_same_corners(&mixed, &vertices, &indices);
+        assert_eq!(vertices.len(), 6);
+    }
+
+    #[test]
+    fn triangles_without_area_have_no_normal_and_harm_nobody() {
+        let mut level = roof(30.0);
+        level.indices.extend([0, 0, 1, 2, 2, 2, 0, 1, 0]);
+        let (vertices, indices) = with_normals(&level);
+        assert_same_corners(&level, &vertices, &indices);
+        assert_eq!(vertices[..4], with_normals(&roof(30.0)).0);
+        assert!(vertices[4..].iter().all(|vertex| vertex.normal == [0; 4]));
+        assert_eq!(with_normals(&self::level(vec![], vec![])), (vec![], vec![]));
+    }
+
+    #[test]
+    fn a_round_thing_is_round() {
+        let teapot = &teapot_mesh().levels()[0].clone();
+        let (vertices, indices) = with_normals(teapot);
+        assert_same_corners(teapot, &vertices, &indices);
+        // A vertex a corner would be six times as many.
+        assert!(vertices.len() < teapot.positions.len() * 3 / 2, "{}", vertices.len());
+        assert!(vertices.iter().all(|vertex| (normal(vertex).length() - 1.0).abs() < 1e-3));
+    }
+}

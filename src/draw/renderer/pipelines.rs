@@ -278,3 +278,62 @@ const CORNERS: VertexBufferLayout<'_> = VertexBufferLayout {
 const fn attribute(shader_location: u32, format: VertexFormat, offset: usize) -> VertexAttribute {
     VertexAttribute { format, offset: offset as u64, shader_location }
 }
+
+#[cfg(test)]
+mod tests {
+    use wgpu::naga::ShaderStage;
+    use wgpu::naga::back::glsl;
+    use wgpu::naga::front::wgsl;
+    use wgpu::naga::proc::BoundsCheckPolicies;
+    use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+
+    use super::*;
+
+    const KINDS: [Kind; 8] = [
+        Kind::Lit,
+        Kind::Unlit,
+        Kind::Depth,
+        Kind::Layers,
+        Kind::Edges,
+        Kind::XRayEdges,
+        Kind::Polygons,
+        Kind::Borders,
+    ];
+
+    /// Without a device: valid WGSL that needs no optional capability and can be written as the
+    /// GLSL that OpenGL takes, with the stages that the pipelines start.
+    #[test]
+    fn shaders_are_valid_and_portable() {
+        for (source, of_surfaces) in SOURCES.into_iter().zip([true, false]) {
+            let module =
+                wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
+            let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+                .validate(&module)
+                .unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
+            for entry in &module.entry_points {
+                let options = glsl::Options {
+                    version: glsl::Version::Embedded { version: 310, is_webgl: false },
+                    ..glsl::Options::default()
+                };
+                let pipeline = glsl::PipelineOptions {
+                    shader_stage: entry.stage,
+                    entry_point: entry.name.clone(),
+                    multiview: None,
+                };
+                let (mut out, policies) = (String::new(), BoundsCheckPolicies::default());
+                let writer = glsl::Writer::new(&mut out, &module, &info, &options, &pipeline, policies);
+                let written = writer.and_then(|mut writer| writer.write());
+                written.unwrap_or_else(|error| panic!("{}: {error}", entry.name));
+            }
+            let wanted = KINDS.iter().filter(|kind| kind.is_surface() == of_surfaces);
+            let wanted: Vec<_> = wanted.flat_map(|kind| kind.recipe().stages).collect();
+            let exists = |name: &str, stage| {
+                module.entry_points.iter().any(|entry| entry.name == name && entry.stage == stage)
+            };
+            for pair in wanted.as_chunks::<2>().0 {
+                assert!(exists(pair[0], ShaderStage::Vertex) && exists(pair[1], ShaderStage::Fragment));
+            }
+            assert!(module.entry_points.iter().all(|entry| wanted.contains(&entry.name.as_str())));
+        }
+    }
+}
