@@ -37,8 +37,10 @@ impl Costs {
     /// Takes a frame's times. A frame that drew or asked nothing, or took no time, tells nothing.
     pub fn learn(&mut self, stats: &FrameStats) {
         let each = |time: Duration, n: u32| time.as_secs_f32() / n as f32;
-        let question = each(stats.policy + stats.query + stats.wait, stats.queries);
-        let object = each(stats.draw, stats.drawn);
+        // While answers are waited for, a device draws first.
+        let drawing = stats.device_draw.min(stats.wait);
+        let question = each(stats.policy + stats.query + stats.wait - drawing, stats.queries);
+        let object = each(stats.draw + drawing, stats.drawn);
         let ratio = question / object;
         if ratio.is_finite() && ratio > 0.0 {
             // Of logarithms: twice as dear and half as dear weigh alike.
@@ -69,6 +71,15 @@ mod tests {
         }
         let expected = 10.0 / 40.0;
         assert!((costs.question() / expected - 1.0).abs() < 1e-3, "{costs:?}");
+    }
+
+    #[test]
+    fn what_a_device_draws_is_no_part_of_asking() {
+        let (mut apart, mut together) = (Costs::default(), Costs::default());
+        apart.learn(&frame(100, 10, 900, 20));
+        let device_draw = Duration::from_micros(800);
+        together.learn(&FrameStats { device_draw, ..frame(900, 10, 100, 20) });
+        assert_eq!(apart, together);
     }
 
     #[test]

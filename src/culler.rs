@@ -12,7 +12,7 @@ pub use why::{Holder, Why};
 
 use crate::geom::{Frustum, PlaneMask, View};
 use crate::policy::{Action, Context, Extent, Policy};
-use crate::query::{Answer, QueryBackend, Ticket, Wait};
+use crate::query::{Answer, DrawTime, QueryBackend, Ticket, Wait};
 use crate::scene::{ObjectId, ObjectRef, Scene};
 use crate::stats::FrameStats;
 use crate::tree::{NodeId, Votes};
@@ -104,6 +104,10 @@ impl<P: Policy> Culler<P> {
         let cx = Context { tree: scene.tree(), view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
         let mut stats = FrameStats::default();
         queries.begin(view)?;
+        let draw_time = queries.draw_time();
+        if let DrawTime::Device(time) = draw_time {
+            stats.device_draw = time;
+        }
         for &slot in scene.objects_store().always() {
             self.drawn.queue(scene, slot);
         }
@@ -149,7 +153,10 @@ impl<P: Policy> Culler<P> {
         self.policy.vote(&mut self.votes);
         stats.drawn = self.drawn.visible.len() as u32;
         stats.policy = start.elapsed().saturating_sub(stats.draw + stats.query + stats.wait);
-        self.costs.learn(&stats);
+        // Drawing that is not told apart from waiting would make questions look dear.
+        if draw_time != DrawTime::Unknown {
+            self.costs.learn(&stats);
+        }
         self.votes.costs = self.costs;
         Ok(stats)
     }

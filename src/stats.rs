@@ -23,4 +23,7 @@ pub struct FrameStats {
     pub query: Duration,
     /// Time in waiting for answers, what is computed meanwhile included.
     pub wait: Duration,
+    /// What a device took to draw while answers were waited for, in a frame not long ago; zero where
+    /// that is not known, and where draws are done at once.
+    pub device_draw: Duration,
 }

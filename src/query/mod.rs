@@ -5,6 +5,8 @@ pub mod gpu;
 pub mod oracle;
 pub mod software;
 
+use std::time::Duration;
+
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::scene::ObjectSet;
@@ -62,6 +64,17 @@ pub enum Wait {
     Block,
 }
 
+/// Where the time of drawing goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrawTime {
+    /// [`QueryBackend::draw`] takes it.
+    AtOnce,
+    /// A device draws while answers are waited for; in a frame not long ago it took this.
+    Device(Duration),
+    /// The same, and nobody knows how long it takes.
+    Unknown,
+}
+
 /// Owns the depth of the frame: draws go in, questions are answered against what was drawn so
 /// far. Nothing drawn later changes an answer to a question asked earlier.
 pub trait QueryBackend {
@@ -98,6 +111,11 @@ pub trait QueryBackend {
     /// What the device reports. Answers that an error swallowed are delivered as
     /// [`Answer::Unknown`] first.
     fn answers(&mut self, wait: Wait, deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error>;
+
+    /// Where the time of drawing goes: what drawing costs is learnt from it.
+    fn draw_time(&self) -> DrawTime {
+        DrawTime::AtOnce
+    }
 
     /// Ends the frame.
     ///

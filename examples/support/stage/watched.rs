@@ -2,7 +2,7 @@
 
 use tercet::Error;
 use tercet::geom::{Proxy, View};
-use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
+use tercet::query::{Answer, DrawTime, QueryBackend, Ticket, Wait, Want};
 
 /// A backend, and the questions of its last frame if anybody wants them.
 pub struct Watched<B> {
@@ -94,6 +94,10 @@ impl<B: QueryBackend> QueryBackend for Watched<B> {
             }
             deliver(ticket, answer);
         })
+    }
+
+    fn draw_time(&self) -> DrawTime {
+        self.backend.draw_time()
     }
 
     fn end(&mut self) -> Result<(), Error> {

@@ -1,6 +1,7 @@
 //! One frame of the window: input, engine, picture, panels.
 
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use eframe::egui::{
     Align2, Area, CentralPanel, Color32, Frame, Id, Image, Key, Panel, Response, Sense, Ui,
@@ -18,6 +19,11 @@ use crate::support::flags::Flags;
 use crate::support::scenario::Scenario;
 use crate::support::stage::{Gpu, Picture, Stage};
 
+const LAYER_KEYS: [Key; 6] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
+
+/// How long a message stands.
+const READING_TIME: Duration = Duration::from_secs(8);
+
 /// The window.
 pub struct App {
     engine: Engine,
@@ -29,8 +35,8 @@ pub struct App {
     screenshots: Screenshots,
     /// Where screenshots go.
     out: PathBuf,
-    /// What the user should know.
-    message: Option<String>,
+    /// What the user should know, and since when.
+    message: Option<(String, Instant)>,
     /// Under the cursor: whether it is drawn, and why.
     picked: Vec<(bool, String)>,
     marked: Option<Aabb>,
@@ -58,6 +64,10 @@ impl App {
         })
     }
 
+    fn say(&mut self, message: String) {
+        self.message = Some((message, Instant::now()));
+    }
+
     fn keys(&mut self, ui: &Ui) {
         let ctx = ui.ctx();
         let pressed = |key| ctx.input(|input| input.key_pressed(key));
@@ -65,7 +75,7 @@ impl App {
             self.screenshots.take(ctx);
         }
         if let Some(saved) = self.screenshots.save(&self.out) {
-            self.message = Some(match saved {
+            self.say(match saved {
                 Ok(file) => format!("saved {}", file.display()),
                 Err(error) => format!("{error:#}"),
             });
@@ -82,6 +92,9 @@ impl App {
         }
         if pressed(Key::Space) {
             self.engine.paused = !self.engine.paused;
+        }
+        for ((on, _), key) in self.layers.each().into_iter().zip(LAYER_KEYS) {
+            *on ^= pressed(key);
         }
     }
 
@@ -145,15 +158,15 @@ impl eframe::App for App {
             .exact_size(PANELS.0)
             .show(ui, |ui| panel::show(ui, &mut self.engine, &mut self.fly, &mut self.layers));
         if let Err(error) = panel.inner {
-            self.message = Some(format!("{error:#}"));
+            self.say(format!("{error:#}"));
         }
         let done = CentralPanel::no_frame().show(ui, |ui| self.picture(ui, frame));
         if let Err(error) = done.inner {
-            self.message = Some(format!("{error:#}"));
+            self.say(format!("{error:#}"));
             // Nothing is lost: the CPU goes on.
             if let Stage::Wgpu(_) = self.engine.stage {
-                self.message = Some(format!("{error:#}: going on in software"));
-                self.engine.use_gpu(false).unwrap_or_else(|error| self.message = Some(format!("{error:#}")));
+                let next = self.engine.use_gpu(false).map(|()| "going on in software".to_owned());
+                self.say(format!("{error:#}: {}", next.unwrap_or_else(|error| format!("{error:#}"))));
             }
         }
         let place = done.response.rect;
@@ -165,7 +178,8 @@ impl eframe::App for App {
                 .interactable(false)
                 .show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, |ui| panel::why(ui, &self.picked)));
         }
-        if let Some(message) = &self.message {
+        self.message = self.message.take().filter(|(_, since)| since.elapsed() < READING_TIME);
+        if let Some((message, _)) = &self.message {
             let corner = place.left_top() + eframe::egui::vec2(8.0, 8.0);
             Area::new(Id::unique("message")).fixed_pos(corner).interactable(false).show(ui.ctx(), |ui| {
                 Frame::popup(ui.style()).show(ui, |ui| ui.colored_label(Color32::YELLOW, message))

@@ -29,6 +29,20 @@ pub struct Layers {
     pub proxies: bool,
 }
 
+impl Layers {
+    /// Each of them, with what it shows, in the order of its keys.
+    pub fn each(&mut self) -> [(&mut bool, &'static str); 6] {
+        [
+            (&mut self.overdraw, "overdraw: how often a pixel is drawn"),
+            (&mut self.everything, "everything, culled or not"),
+            (&mut self.nodes, "boxes of nodes"),
+            (&mut self.culled, "boxes of what was culled in the frustum"),
+            (&mut self.awake, "boxes of objects that are awake"),
+            (&mut self.proxies, "proxies: what questions rasterise"),
+        ]
+    }
+}
+
 /// Draws the picture.
 pub struct Display {
     renderer: Renderer,

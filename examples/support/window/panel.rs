@@ -13,7 +13,8 @@ use crate::support::table::count;
 
 const KEYS: &str = "W A S D, Q E: fly · Shift: faster · wheel: speed
 drag: look · P: follow the flight · Space: pause
-F: freeze the culling camera · F12: screenshot";
+F: freeze the culling camera · F12: screenshot
+1 to 6: the views below";
 
 /// Shows the controls and does what they say.
 ///
@@ -41,7 +42,7 @@ fn figures(ui: &mut Ui, engine: &Engine) {
     ui.heading(&engine.scenario.name);
     let Some(last) = engine.records.back() else { return };
     ui.label(format!(
-        "{} of {} objects drawn, {} in the frustum",
+        "{} of {} drawn, {} in the frustum",
         count(last.drawn.into()),
         count(engine.scene.len() as f64),
         count(last.in_frustum.into())
@@ -89,13 +90,9 @@ fn camera(ui: &mut Ui, engine: &mut Engine, fly: &mut Fly) {
 }
 
 fn view(ui: &mut Ui, layers: &mut Layers) {
-    let Layers { overdraw, everything, nodes, culled, awake, proxies } = layers;
-    ui.checkbox(overdraw, "overdraw: how often each pixel is drawn");
-    ui.checkbox(everything, "draw everything, to compare");
-    ui.checkbox(nodes, "boxes of nodes");
-    ui.checkbox(culled, "boxes of objects culled in the frustum");
-    ui.checkbox(awake, "boxes of objects that are awake");
-    ui.checkbox(proxies, "proxies: what the questions rasterise");
+    for (n, (on, what)) in layers.each().into_iter().enumerate() {
+        ui.checkbox(on, format!("{} {what}", n + 1));
+    }
     CollapsingHeader::new("What the colours mean").show(ui, states::legend);
 }
 

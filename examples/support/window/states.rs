@@ -1,6 +1,6 @@
 //! Boxes by what became of them in the last frame.
 
-use eframe::egui::{Color32, Ui};
+use eframe::egui::{Color32, Sense, Ui, vec2};
 use tercet::geom::{Aabb, Frustum};
 use tercet::policy::Fate;
 
@@ -82,7 +82,8 @@ fn of_fate(fate: Fate, is_straddle: bool) -> Option<Color> {
 pub fn legend(ui: &mut Ui) {
     for ([r, g, b, _], meaning) in LEGEND {
         ui.horizontal(|ui| {
-            ui.colored_label(Color32::from_rgb(r, g, b), "■");
+            let (square, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+            ui.painter().rect_filled(square, 2.0, Color32::from_rgb(r, g, b));
             ui.label(meaning);
         });
     }

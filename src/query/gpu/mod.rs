@@ -83,7 +83,7 @@ pub use counter::Counting;
 pub use shaders::{Shader, Shaders};
 pub use targets::{ColorTarget, DepthTarget, FrameTargets};
 
-use super::{Answer, QueryBackend, Ticket, Wait, Want};
+use super::{Answer, DrawTime, QueryBackend, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
 use ask_natively::AskNatively;
@@ -306,6 +306,10 @@ impl QueryBackend for GpuQueries {
             self.deliver_unknown(&mut deliver);
         }
         result
+    }
+
+    fn draw_time(&self) -> DrawTime {
+        self.stats().draw_time.map_or(DrawTime::Unknown, DrawTime::Device)
     }
 
     fn end(&mut self) -> Result<(), Error> {
