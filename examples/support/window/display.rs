@@ -96,6 +96,9 @@ impl Display {
         self.boxes.clear();
         states::boxes(engine, layers, &mut self.boxes);
         self.renderer.draw_boxes(&mut pass, &self.boxes, Lines::DepthTested);
+        // What is hidden is to be seen, too: faintly.
+        self.boxes.iter_mut().for_each(|(_, color)| color[3] /= 4);
+        self.renderer.draw_boxes(&mut pass, &self.boxes, Lines::XRay);
         let marked = marked.map(|bounds| (bounds, states::MARKED));
         self.renderer.draw_boxes(&mut pass, marked.as_slice(), Lines::XRay);
         // Seen from elsewhere, rectangles on the culling camera's screen mean nothing.

@@ -139,6 +139,7 @@ fn all_dials(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
 
 /// Why each object under the cursor is drawn or not.
 pub fn why(ui: &mut Ui, lines: &[(bool, String)]) {
+    ui.set_min_width(460.0);
     ui.strong("Under the cursor, nearest first");
     for (is_drawn, line) in lines {
         let color = if *is_drawn { Color32::LIGHT_GREEN } else { Color32::LIGHT_RED };
