@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 
 use bytemuck::cast_slice;
+use rayon::prelude::*;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{Buffer, BufferUsages, Device};
 
-use super::normals::with_normals;
-use crate::scene::mesh::{Level, Mesh, MeshId};
+use super::normals::{Vertex, with_normals};
+use crate::scene::mesh::{Mesh, MeshId};
 
 /// The meshes that have been drawn, a *group* for each of their levels.
 #[derive(Debug, Default)]
@@ -30,7 +31,9 @@ impl Geometry {
     pub(super) fn first_group(&mut self, device: &Device, mesh: &Mesh) -> u32 {
         *self.first.entry(mesh.id()).or_insert_with(|| {
             let first = self.groups.len() as u32;
-            self.groups.extend(mesh.levels().iter().map(|level| Group::new(device, level)));
+            let levels: Vec<_> = mesh.levels().par_iter().map(with_normals).collect();
+            self.groups
+                .extend(levels.iter().map(|(vertices, indices)| Group::new(device, vertices, indices)));
             first
         })
     }
@@ -55,16 +58,15 @@ impl Geometry {
 }
 
 impl Group {
-    fn new(device: &Device, level: &Level) -> Self {
-        let (vertices, indices) = with_normals(level);
+    fn new(device: &Device, vertices: &[Vertex], indices: &[u32]) -> Self {
         let buffer = |label, contents: &[u8], usage| {
             // There are no empty buffers.
             let contents = if contents.is_empty() { &[0; 4] } else { contents };
             device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
         };
         Self {
-            vertices: buffer("tercet vertices", cast_slice(&vertices), BufferUsages::VERTEX),
-            indices: buffer("tercet indices", cast_slice(&indices), BufferUsages::INDEX),
+            vertices: buffer("tercet vertices", cast_slice(vertices), BufferUsages::VERTEX),
+            indices: buffer("tercet indices", cast_slice(indices), BufferUsages::INDEX),
             index_count: indices.len() as u32,
         }
     }
