@@ -1,0 +1,118 @@
+//! Tercet inside an app that has its own world, its own device and its own pipelines.
+//!
+//! ```text
+//! cargo run --release --example own_world
+//! ```
+//!
+//! A camera and the sun look at a city. Both views share one scene; each has its own culler and its
+//! own questions, so the shadow map is culled just as the picture is. The last frame goes to
+//! `own_world.png`: bit for bit what it is without culling (`-- none` draws it so). No window is
+//! needed; `WGPU_BACKEND` chooses between Vulkan, OpenGL and the rest.
+//!
+//! What an app with a renderer has anyway is in `gpu.rs`, `city.rs` and `shader.wgsl`.
+
+mod city;
+mod gpu;
+
+use city::{Look, Velocity};
+use gpu::Gpu;
+use hecs::World;
+use image::{RgbaImage, imageops};
+use tercet::geom::View;
+use tercet::policy::{self, Policy};
+use tercet::query::gpu::{FrameTargets, GpuQueries, wgpu};
+use tercet::scene::{Bounds, Scene, SceneConfig};
+use tercet::{Culler, Error, FrameStats};
+use wgpu::{TextureFormat, TextureUsages, TextureView};
+
+fn main() -> anyhow::Result<()> {
+    let policy = std::env::args().nth(1).unwrap_or_else(|| "dual-query".to_owned());
+    let picture = run(&policy, 40, [1920, 1080])?;
+    // At half the size, edges are smooth.
+    imageops::thumbnail(&picture, 960, 540).save("own_world.png")?;
+    println!("own_world.png is the last frame");
+    Ok(())
+}
+
+/// Draws some frames and returns the last one.
+pub fn run(policy: &str, frames: u32, size: [u32; 2]) -> anyhow::Result<RgbaImage> {
+    let mut world = city::build();
+    let gpu = Gpu::new(world.len())?;
+    // Depth is what questions are put to, so shaders must be able to read it.
+    let (attachment, readable) = (TextureUsages::RENDER_ATTACHMENT, TextureUsages::TEXTURE_BINDING);
+    let shadows = gpu.texture([2048; 2], TextureFormat::Depth32Float, attachment | readable);
+    let depth = gpu.texture(size, TextureFormat::Depth32Float, attachment | readable);
+    let color = gpu.texture(size, TextureFormat::Rgba8UnormSrgb, attachment | TextureUsages::COPY_SRC);
+    let [shadow_map, depth, colors] = [&shadows, &depth, &color].map(|t| t.create_view(&Default::default()));
+
+    // Where things are: one a world.
+    let mut scene = Scene::new(SceneConfig::default());
+    // Who looks: one a view.
+    let mut sun = Camera::new(&gpu, policy, FrameTargets::new(shadow_map.clone()), None)?;
+    let sky = wgpu::LoadOp::Clear(city::HAZE);
+    let targets = FrameTargets::new(depth).with_color(colors, sky);
+    let mut eye = Camera::new(&gpu, policy, targets, Some(&shadow_map))?;
+
+    for frame in 0..frames {
+        // The app moves its things as it likes. The scene finds out which ones have moved.
+        for (bounds, velocity) in world.query_mut::<(&mut Bounds, &Velocity)>() {
+            *bounds = city::driven(bounds, velocity);
+        }
+        scene.sync(&world);
+
+        let (eye_view, sun_view) = (city::eye_view(frame, size)?, city::sun_view(frame)?);
+        gpu.upload(&world, &eye_view, &sun_view);
+        // In turn, because the picture is lit by the shadow map. Views that need nothing of one
+        // another (split screens, two lamps) can be drawn at once, in `std::thread::scope`: a
+        // culler only reads the scene.
+        let cast = sun.draw(&scene, &world, &sun_view)?;
+        let seen = eye.draw(&scene, &world, &eye_view)?;
+        // What both views have seen decides how finely the scene divides space.
+        scene.adapt([&mut sun.culler, &mut eye.culler]);
+
+        let (all, seen, cast) = (scene.len(), seen.drawn, cast.drawn);
+        println!("frame {frame:2}: of {all} objects, {seen} drawn in the picture, {cast} in the shadow map");
+    }
+    Ok(gpu.read(&color))
+}
+
+/// A view, with what it draws with.
+struct Camera {
+    culler: Culler<Box<dyn Policy>>,
+    queries: GpuQueries,
+    pipeline: wgpu::RenderPipeline,
+    bindings: wgpu::BindGroup,
+    instances: wgpu::Buffer,
+}
+
+impl Camera {
+    /// A view that draws into `targets`: depth alone, or colours in the light that a shadow map
+    /// lets through.
+    fn new(
+        gpu: &Gpu,
+        policy: &str,
+        targets: FrameTargets,
+        light: Option<&TextureView>,
+    ) -> Result<Self, Error> {
+        let culler = Culler::new(policy::by_name(policy)?);
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue)?;
+        queries.target(&targets);
+        let (pipeline, bindings) = gpu.pipeline(light);
+        Ok(Self { culler, queries, pipeline, bindings, instances: gpu.instances.clone() })
+    }
+
+    fn draw(&mut self, scene: &Scene, world: &World, view: &View) -> Result<FrameStats, Error> {
+        self.culler.frame(scene, view, &mut self.queries, |pass, objects| {
+            // Called several times a frame: first with what must be in front, then with what was
+            // found visible behind it. Each call is a pass of its own, so state is set each time.
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.bindings, &[]);
+            pass.set_vertex_buffer(0, self.instances.slice(..));
+            for object in objects {
+                if let Ok(look) = world.get::<&Look>(object.entity()) {
+                    pass.draw(look.vertices.clone(), look.instance..look.instance + 1);
+                }
+            }
+        })
+    }
+}
