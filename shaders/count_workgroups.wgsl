@@ -41,8 +41,7 @@ fn count(
         }
     }
     if !any {
-        atomicAdd(&visible, seen);
-        atomicAdd(&total, covered);
+        add_up(seen, covered);
     }
     workgroupBarrier();
     if all(lane.xy == vec2<u32>(0u)) {

@@ -5,13 +5,13 @@
 use tercet::Culler;
 use tercet::geom::{DepthFormat, Frustum, Viewport};
 use tercet::policy::{self, Policy};
-use tercet::query::gpu::{AnyBy, Counting, GpuConfig, GpuQueries, Shaders};
+use tercet::query::gpu::{AnyBy, GpuConfig, GpuQueries, Shaders};
 use tercet::scene::{ObjectSet, Scene, SceneConfig};
 use tercet::worlds::{self, Model, Pathology};
 
 use crate::renderer::Renderer;
 use crate::stage::Stage;
-use crate::support::{Gpu, depth_texture, gpus, read_depth, targets};
+use crate::support::{Gpu, depth_texture, gpus, read_depth, supported, targets};
 
 const SCREEN: Viewport = Viewport::new(96, 54);
 const FRAMES: u32 = 12;
@@ -90,11 +90,11 @@ fn policy(name: &str) -> Box<dyn Policy> {
 /// and ways of counting differ in what they count, but hardly in how they are asked. So all
 /// policies are run with the default, and each way with one that asks for counts and one that asks
 /// for any.
-fn runs() -> Vec<(GpuConfig, &'static [&'static str], u64)> {
+fn runs(gpu: &Gpu) -> Vec<(GpuConfig, &'static [&'static str], u64)> {
     let default = GpuConfig::default();
     let all: &[_] = &["dual-query", "dual-query, visible-first", "statistical", "stop-and-wait"];
     let mut runs = vec![(default.clone(), all, 5)];
-    for counting in Counting::ALL {
+    for counting in supported(gpu) {
         let config = GpuConfig { counting: Some(counting), ..default.clone() };
         runs.push((config, &["dual-query", "statistical"], 2));
     }
@@ -106,7 +106,7 @@ fn runs() -> Vec<(GpuConfig, &'static [&'static str], u64)> {
 #[test]
 fn random_worlds() {
     for gpu in gpus() {
-        for (config, policies, worlds) in runs() {
+        for (config, policies, worlds) in runs(&gpu) {
             let what = format!("{:?}, {:?}, any by {:?}", gpu.backend, config.counting, config.any);
             let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
             for (&samples, name) in
@@ -156,7 +156,8 @@ fn pathological_worlds() {
 fn lying_shaders_are_found_out() {
     let Some(gpu) = gpus().into_iter().next() else { return };
     let mut shaders = Shaders::default();
-    for shader in [&mut shaders.count_fragments, &mut shaders.count_workgroups, &mut shaders.count_blocks] {
+    let Shaders { count_fragments, count_workgroups, count_subgroups, count_blocks, .. } = &mut shaders;
+    for shader in [count_fragments, count_workgroups, count_subgroups, count_blocks] {
         let lie = "nearness >= stored && pixel.x % 8u == 0u";
         shader.single = shader.single.replace("nearness >= stored", lie).into();
     }
@@ -164,10 +165,8 @@ fn lying_shaders_are_found_out() {
     shaders.ask_natively = shaders.ask_natively.replace("if !covers", lie).into();
     let lying = GpuConfig { shaders, ..GpuConfig::default() };
     let native = GpuConfig { any: AnyBy::Native, ..lying.clone() };
-    let counted = Counting::ALL.map(|counting| GpuConfig { counting: Some(counting), ..lying.clone() });
-    for (config, name) in
-        counted.map(|config| (config, "dual-query")).into_iter().chain([(native, "statistical")])
-    {
+    let counted = supported(&gpu).map(|counting| GpuConfig { counting: Some(counting), ..lying.clone() });
+    for (config, name) in counted.map(|config| (config, "dual-query")).chain([(native, "statistical")]) {
         let what = format!("{:?}, any by {:?}", config.counting, config.any);
         let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
         let mut all = Outcome::default();

@@ -66,7 +66,7 @@ fn backends_can_be_sent_to_threads() {
 #[test]
 fn answers_are_about_the_time_of_asking() {
     for gpu in gpus() {
-        for counting in ways() {
+        for counting in ways(&gpu) {
             let view = view();
             let depth = depth_texture(&gpu, &view);
             let mut queries = gpu.exact_queries(GpuConfig { counting, ..Default::default() });
@@ -134,7 +134,7 @@ fn polling_delivers_what_has_arrived_and_forgets_what_is_old() {
 #[test]
 fn many_boxes_fit() {
     for gpu in gpus() {
-        for counting in ways() {
+        for counting in ways(&gpu) {
             let view = view();
             let depth = depth_texture(&gpu, &view);
             let half = ClipSpace::new(&gpu, &view, &half_wall(&view, 0.5));

@@ -31,6 +31,7 @@ fn mutated(broken: Broken, (from, to): Mutation) -> Shaders {
         }
         Broken::Counting(Counting::Fragments) => vec![&mut shaders.count_fragments],
         Broken::Counting(Counting::Workgroups) => vec![&mut shaders.count_workgroups],
+        Broken::Counting(Counting::Subgroups) => vec![&mut shaders.count_subgroups],
         Broken::Counting(Counting::Blocks) => vec![&mut shaders.count_blocks, &mut shaders.gather_blocks],
     };
     for Shader { single, multisampled } in passes {
@@ -81,11 +82,19 @@ fn wrong_shaders_are_found_out() {
         ("x < end.x", "x + 1u < end.x"),
         ("tile.column, tile.row", "tile.row, tile.column"),
         ("covered += frame.samples", "covered += 2u"),
+        ("add_up(seen, covered)", "add_up(covered, seen)"),
+        ("if !any {", "if !any && lane.y == 0u {"),
         ("if any && seen != 0u {", "if any && seen > 64u {"),
         (
             "atomicAdd(&counts[i].visible, atomicLoad(&visible))",
             "atomicStore(&counts[i].visible, atomicLoad(&visible))",
         ),
+    ];
+    const SUBGROUPS: &[Mutation] = &[
+        ("subgroupExclusiveAdd(1u) == 0u", "subgroupExclusiveAdd(1u) == 99u"),
+        ("subgroupExclusiveAdd(1u) == 0u", "true"),
+        ("subgroupAdd(seen)", "seen"),
+        ("subgroupAdd(covered)", "covered"),
     ];
     const BLOCKS: &[Mutation] = &[
         ("first.x) * (end.y - first.y)", "first.x + 1u) * (end.y - first.y)"),
@@ -110,9 +119,15 @@ fn wrong_shaders_are_found_out() {
     for (broken, own) in [
         of(Counting::Fragments, FRAGMENTS),
         of(Counting::Workgroups, WORKGROUPS),
+        of(Counting::Subgroups, SUBGROUPS),
         of(Counting::Blocks, BLOCKS),
         (Broken::Native, NATIVE.to_vec()),
     ] {
+        if let Broken::Counting(counting) = broken
+            && !counting.is_supported(&gpu.device)
+        {
+            continue;
+        }
         for &mutation in SHARED.iter().chain(&own) {
             let shaders = mutated(broken, mutation);
             let config = match broken {

@@ -60,9 +60,14 @@ pub fn gpus() -> Vec<Gpu> {
     gpus
 }
 
-/// Each way of counting by itself, and what is chosen by default.
-pub fn ways() -> impl Iterator<Item = Option<Counting>> {
-    Counting::ALL.into_iter().map(Some).chain([None])
+/// Each way of counting that a device supports.
+pub fn supported(gpu: &Gpu) -> impl Iterator<Item = Counting> {
+    Counting::ALL.into_iter().filter(|counting| counting.is_supported(&gpu.device))
+}
+
+/// Each of them by itself, and what is chosen by default.
+pub fn ways(gpu: &Gpu) -> impl Iterator<Item = Option<Counting>> {
+    supported(gpu).map(Some).chain([None])
 }
 
 /// A depth texture that a view can be drawn into.

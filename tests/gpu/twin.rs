@@ -254,7 +254,7 @@ fn ties(dice: &mut ChaCha8Rng, view: &View, nearness: &Nearness, count: usize) -
 #[test]
 fn answers_equal_the_plain_loop() {
     for gpu in gpus() {
-        let counted = ways().map(|counting| GpuConfig { counting, ..GpuConfig::default() });
+        let counted = ways(&gpu).map(|counting| GpuConfig { counting, ..GpuConfig::default() });
         let native = GpuConfig { any: AnyBy::Native, ..GpuConfig::default() };
         let mut twin = Twin::new(&gpu, counted.chain([native]), 1);
         for convention in conventions(&gpu) {

@@ -1,6 +1,8 @@
 //! The ways of counting, behind one door.
 
-use wgpu::{BindGroup, Buffer, Device, ShaderModule, ShaderModuleDescriptor, ShaderSource, TextureView};
+use wgpu::{
+    BindGroup, Buffer, Device, Features, ShaderModule, ShaderModuleDescriptor, ShaderSource, TextureView,
+};
 
 use super::batch::Batch;
 use super::bind::{self, Bound, DepthAs, Layouts};
@@ -21,6 +23,9 @@ pub enum Counting {
     Fragments,
     /// In a compute shader, a workgroup for each 64 × 64 pixels of a box, which adds up by itself.
     Workgroups,
+    /// As [`Counting::Workgroups`], but the lanes of a subgroup add up among themselves before they
+    /// touch the workgroup's memory. The device needs [`Features::SUBGROUP`].
+    Subgroups,
     /// As [`Counting::Workgroups`], but the least and greatest depth of each 8 × 8 pixels is
     /// gathered first, so that most of a large box is decided without looking at its samples.
     Blocks,
@@ -28,7 +33,7 @@ pub enum Counting {
 
 impl Counting {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Fragments, Self::Workgroups, Self::Blocks];
+    pub const ALL: [Self; 4] = [Self::Fragments, Self::Workgroups, Self::Subgroups, Self::Blocks];
 
     /// Whether a device can count in this way.
     pub fn is_supported(self, device: &Device) -> bool {
@@ -39,6 +44,7 @@ impl Counting {
         match self {
             Self::Fragments => has(2),
             Self::Workgroups => has(3) && computes,
+            Self::Subgroups => has(3) && computes && device.features().contains(Features::SUBGROUP),
             Self::Blocks => has(4) && computes,
         }
     }
@@ -134,7 +140,7 @@ impl Counter {
         multisampled: bool,
     ) -> Result<Self, Error> {
         if !counting.is_supported(device) {
-            return Err(failed(format!("its limits do not allow for counting in {counting:?}")));
+            return Err(failed(format!("its limits or features do not allow for counting in {counting:?}")));
         }
         guarded(device, || {
             let module = compiled(device, shaders.source(counting, multisampled));
@@ -146,7 +152,7 @@ impl Counter {
                     let pass = Pass::Fragments(CountFragments::new(device, &layouts, &module));
                     Self { layouts, pass }
                 }
-                Counting::Workgroups => {
+                Counting::Workgroups | Counting::Subgroups => {
                     let layouts = layouts(CountWorkgroups::STAGES, CountWorkgroups::BUFFERS);
                     let pass = Pass::Workgroups(CountWorkgroups::new(device, &layouts, &module));
                     Self { layouts, pass }

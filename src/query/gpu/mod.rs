@@ -231,9 +231,10 @@ impl GpuQueries {
     }
 
     /// The optional features that a device should be asked for, of those that the adapter has.
-    /// Without them everything works, but for the times in [`GpuStats`].
+    /// Without them everything works, but for the times in [`GpuStats`] and
+    /// [`Counting::Subgroups`].
     pub fn wanted_features(adapter: &Adapter) -> Features {
-        adapter.features() & Features::TIMESTAMP_QUERY
+        adapter.features() & (Features::TIMESTAMP_QUERY | Features::SUBGROUP)
     }
 
     /// Says what the next frames draw into. They are checked when a frame begins.

@@ -27,6 +27,8 @@ pub struct Shaders {
     pub count_fragments: Shader,
     /// [`Counting::Workgroups`].
     pub count_workgroups: Shader,
+    /// [`Counting::Subgroups`].
+    pub count_subgroups: Shader,
     /// [`Counting::Blocks`].
     pub count_blocks: Shader,
     /// What [`Counting::Blocks`] gathers first.
@@ -41,6 +43,7 @@ impl Shaders {
         let shader = match counting {
             Counting::Fragments => &self.count_fragments,
             Counting::Workgroups => &self.count_workgroups,
+            Counting::Subgroups => &self.count_subgroups,
             Counting::Blocks => &self.count_blocks,
         };
         shader.source(multisampled)
@@ -74,7 +77,12 @@ impl Default for Shaders {
     fn default() -> Self {
         Self {
             count_fragments: shader!("count_fragments.wgsl"),
-            count_workgroups: shader!("shared/tiles.wgsl", "count_workgroups.wgsl"),
+            count_workgroups: shader!("shared/tiles.wgsl", "shared/add_lanes.wgsl", "count_workgroups.wgsl"),
+            count_subgroups: shader!(
+                "shared/tiles.wgsl",
+                "shared/add_subgroups.wgsl",
+                "count_workgroups.wgsl"
+            ),
             count_blocks: shader!("shared/tiles.wgsl", "count_blocks.wgsl"),
             gather_blocks: shader!("gather_blocks.wgsl"),
             ask_natively: Cow::Borrowed(concat!(
