@@ -22,7 +22,7 @@ pub fn run(flags: &Flags, scenario: Scenario) -> anyhow::Result<()> {
         Ok(()) => Ok(()),
         Err(window::NotShown { why, scenario }) => {
             println!("No window could be opened ({why:#}): running without one (as with --headless).");
-            headless::run(flags, scenario)
+            headless::run(flags, *scenario)
         }
     }
 }

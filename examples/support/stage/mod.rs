@@ -23,7 +23,7 @@ use super::run::Eye;
 /// One of the backends, chosen at run time.
 pub enum Stage {
     /// The CPU.
-    Software(SoftwareStage),
+    Software(Box<SoftwareStage>),
     /// The GPU.
     Wgpu(Box<WgpuStage>),
 }
@@ -44,9 +44,8 @@ impl Stage {
     /// When there is no adapter and one is asked for, or it cannot be used.
     pub fn new(flags: &Flags) -> anyhow::Result<Self> {
         let detail = flags.detail()?;
-        let software = || Ok(Self::Software(SoftwareStage::new(detail)));
         match flags.backend {
-            Backend::Software => software(),
+            Backend::Software => Ok(Self::software(detail)),
             Backend::Wgpu => {
                 let gpu = Gpu::open()?.context(
                     "--backend wgpu: no graphics adapter was found; install a Vulkan or OpenGL driver \
@@ -56,12 +55,18 @@ impl Stage {
             }
             Backend::Auto => match Gpu::open()? {
                 Some(gpu) if gpu.is_hardware() => Self::on(gpu, detail),
-                _ => software(),
+                _ => Ok(Self::software(detail)),
             },
         }
     }
 
-    fn on(gpu: Gpu, detail: Detail) -> anyhow::Result<Self> {
+    /// The CPU, drawing as finely as `detail` says.
+    pub fn software(detail: Detail) -> Self {
+        Self::Software(Box::new(SoftwareStage::new(detail)))
+    }
+
+    /// A GPU, likewise.
+    pub fn on(gpu: Gpu, detail: Detail) -> anyhow::Result<Self> {
         Ok(Self::Wgpu(Box::new(WgpuStage::new(gpu, detail)?)))
     }
 

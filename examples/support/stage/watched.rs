@@ -40,10 +40,11 @@ impl<B> Watched<B> {
 
     /// Whether the questions of the next frames are kept.
     pub fn keep(&mut self, keep: bool) {
-        match keep {
-            true => self.log.get_or_insert_default(),
-            false => return self.log = None,
-        };
+        if keep {
+            self.log.get_or_insert_default();
+        } else {
+            self.log = None;
+        }
     }
 
     /// The questions of the last frame, if they were kept.
@@ -79,7 +80,7 @@ impl<B: QueryBackend> QueryBackend for Watched<B> {
         if let Some(log) = &mut self.log {
             // The driver numbers a frame's questions from 0.
             let start = log.asked.len();
-            log.asked.extend(boxes.iter().map(|proxy| Asked { proxy: proxy.clone(), visible: None }));
+            log.asked.extend(boxes.iter().map(|proxy| Asked { proxy: *proxy, visible: None }));
             log.ranges.push((start, log.asked.len()));
         }
         self.backend.ask(ticket, boxes, want)

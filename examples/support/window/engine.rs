@@ -16,7 +16,7 @@ use crate::support::reference::Reference;
 use crate::support::report::FrameRecord;
 use crate::support::run::{Eye, Frame};
 use crate::support::scenario::Scenario;
-use crate::support::stage::{Gpu, SoftwareStage, Stage, WgpuStage};
+use crate::support::stage::{Gpu, Stage};
 
 /// Frames that the plots go back.
 const REMEMBERED: usize = 300;
@@ -61,7 +61,7 @@ impl Engine {
         let mut engine = Self {
             scene: Scene::new(SceneConfig { tree: tree.clone(), ..Default::default() }),
             eye: Culler::new(flags.policy()?),
-            stage: Stage::Software(SoftwareStage::new(detail)),
+            stage: Stage::software(detail),
             reference: Reference::new(Painter { detail }, false),
             records: VecDeque::with_capacity(REMEMBERED),
             culled: None,
@@ -83,8 +83,8 @@ impl Engine {
     /// Changes the backend. What was learnt about the scene stays: it is the culler's.
     pub fn use_gpu(&mut self, on_gpu: bool) -> anyhow::Result<()> {
         self.stage = match on_gpu {
-            true => Stage::Wgpu(Box::new(WgpuStage::new(self.gpu.clone(), self.detail)?)),
-            false => Stage::Software(SoftwareStage::new(self.detail)),
+            true => Stage::on(self.gpu.clone(), self.detail)?,
+            false => Stage::software(self.detail),
         };
         Ok(())
     }

@@ -42,7 +42,7 @@ pub struct NotShown {
     /// Why.
     pub why: anyhow::Error,
     /// What was to be shown.
-    pub scenario: Scenario,
+    pub scenario: Box<Scenario>,
 }
 
 /// Points beside and below the picture for controls and plots.
@@ -74,7 +74,9 @@ pub fn show(flags: &Flags, scenario: Scenario) -> Result<(), NotShown> {
     });
     let result = eframe::run_native(flags.example, options, created);
     match (result, waiting.take()) {
-        (Err(error), Some(scenario)) => Err(NotShown { why: anyhow!("{error}"), scenario }),
+        (Err(error), Some(scenario)) => {
+            Err(NotShown { why: anyhow!("{error}"), scenario: Box::new(scenario) })
+        }
         (Err(error), None) => {
             eprintln!("The window was closed: {error}");
             Ok(())
