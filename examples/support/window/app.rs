@@ -51,8 +51,12 @@ impl App {
         // Across the scene in half a minute.
         let speed = engine.bounds().size().length() / 30.0;
         Ok(Self {
-            fly: Fly::new(&engine.scenario.flight, if speed > 0.0 { speed } else { 1.0 }),
-            stride: flags.flight_end()? / flags.frames as f32,
+            fly: Fly::new(
+                &engine.scenario.flight,
+                flags.flight_end()?,
+                if speed > 0.0 { speed } else { 1.0 },
+            ),
+            stride: 1.0 / flags.frames as f32,
             engine,
             display,
             layers: Layers::default(),
@@ -105,9 +109,8 @@ impl App {
         let ctx = ui.ctx().clone();
         let has_keys = !ctx.egui_wants_keyboard_input();
         ctx.input(|input| self.fly.steer(input, &response, has_keys));
-        if !self.engine.paused {
-            self.fly.follow(&self.engine.scenario.flight, self.stride);
-        }
+        let part = if self.engine.paused { 0.0 } else { self.stride };
+        self.fly.follow(&self.engine.scenario.flight, part);
         let side = |points: f32| ((points * ctx.pixels_per_point()) as u32).clamp(1, Viewport::MAX_SIDE);
         let viewport = Viewport::new(side(size.x), side(size.y));
         let view = self.engine.view(self.fly.pose(), viewport)?;

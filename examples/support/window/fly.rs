@@ -21,15 +21,17 @@ pub struct Fly {
     fov_y_degrees: f32,
     /// Metres a second.
     pub speed: f32,
-    /// How far the scenario's own flight has got, 0 to 1.
-    along: f32,
+    /// How far the scenario's own flight has got, 0 to `end`.
+    pub along: f32,
+    /// Where it starts anew, 0 to 1.
+    pub end: f32,
     /// Whether the camera follows it.
     pub follows: bool,
 }
 
 impl Fly {
-    /// At the start of a flight, and following it.
-    pub fn new(flight: &Flight, speed: f32) -> Self {
+    /// At the start of a flight, and following it as far as `end`.
+    pub fn new(flight: &Flight, end: f32, speed: f32) -> Self {
         let mut fly = Self {
             eye: Vec3::ZERO,
             yaw: 0.0,
@@ -37,16 +39,18 @@ impl Fly {
             fov_y_degrees: 60.0,
             speed,
             along: 0.0,
+            end,
             follows: true,
         };
         fly.take(flight.pose(0.0));
         fly
     }
 
-    /// Goes on along the flight by a part of it; from its end, it starts anew.
+    /// Goes on along the flight by a part of it.
     pub fn follow(&mut self, flight: &Flight, part: f32) {
         if self.follows {
-            self.along = (self.along + part).fract();
+            let next = self.along + part * self.end;
+            self.along = if next <= self.end { next } else { 0.0 };
             self.take(flight.pose(self.along));
         }
     }
@@ -111,7 +115,7 @@ mod tests {
     fn it_looks_where_the_flight_looks() {
         for target in [Vec3::new(3.0, 1.0, -2.0), Vec3::new(-4.0, -2.0, 5.0), Vec3::new(0.0, 0.5, 9.0)] {
             let path = Flight::Path(CameraPath::new(50.0, [(Vec3::ONE, target), (Vec3::ONE * 2.0, target)]));
-            let fly = Fly::new(&path, 1.0);
+            let fly = Fly::new(&path, 1.0, 1.0);
             let pose = fly.pose();
             let (want, got) = ((target - Vec3::ONE).normalize(), pose.target - pose.eye);
             assert!(want.distance(got) < 1e-5, "{got} instead of {want}");

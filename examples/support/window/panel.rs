@@ -1,6 +1,6 @@
 //! The controls beside the picture.
 
-use eframe::egui::{CollapsingHeader, Color32, DragValue, RichText, ScrollArea, Ui};
+use eframe::egui::{CollapsingHeader, Color32, DragValue, RichText, ScrollArea, Slider, Ui};
 use tercet::draw::Detail;
 use tercet::policy;
 
@@ -77,6 +77,12 @@ fn camera(ui: &mut Ui, engine: &mut Engine, fly: &mut Fly) {
     ui.horizontal(|ui| {
         ui.checkbox(&mut fly.follows, "follow the flight (P)");
         ui.checkbox(&mut engine.paused, "pause (Space)");
+    });
+    ui.horizontal(|ui| {
+        ui.label("flight").on_hover_text("how far it has got");
+        fly.follows |= ui.add(Slider::new(&mut fly.along, 0.0..=fly.end).show_value(false)).changed();
+        ui.label("flight_end").on_hover_text("how far the camera flies, 0 to 1");
+        ui.add(DragValue::new(&mut fly.end).speed(0.005).range(0.0..=1.0));
     });
     let mut frozen = engine.frozen.is_some();
     if ui.checkbox(&mut frozen, "freeze the culling camera (F), and fly away from it").changed() {
