@@ -42,6 +42,7 @@ const PROGRAM: Program = Program {
     frames: "120",
     full_detail: true,
     refused: &[
+        ("backend", "--backend has no meaning here: all lanes run on the software backend"),
         ("policy", "--policy has no meaning here: the table says which algorithms run"),
         ("still", "--static has no meaning here: the table says what moves"),
     ],

@@ -4,6 +4,7 @@ use std::env;
 
 use super::flags::Flags;
 use super::scenario::Scenario;
+use super::window::NotShown;
 use super::{headless, window};
 
 /// Shows a scenario.
@@ -18,13 +19,9 @@ pub fn run(flags: &Flags, scenario: Scenario) -> anyhow::Result<()> {
         println!("There is no display: running without a window (as with --headless).");
         return headless::run(flags, scenario);
     }
-    match window::show(flags, scenario) {
-        Ok(()) => Ok(()),
-        Err(window::NotShown { why, scenario }) => {
-            println!("No window could be opened ({why:#}): running without one (as with --headless).");
-            headless::run(flags, *scenario)
-        }
-    }
+    let Some(NotShown { why, scenario }) = window::show(flags, scenario)? else { return Ok(()) };
+    println!("No window could be opened ({why:#}): running without one (as with --headless).");
+    headless::run(flags, scenario)
 }
 
 /// Whether this session has a screen to open a window on.

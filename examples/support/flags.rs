@@ -31,7 +31,7 @@ pub struct Flags {
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,
 
-    /// How many frames the camera's flight is cut into
+    /// How many frames the camera's flight is cut into; a window flies it again and again
     #[arg(long, value_name = "N", default_value = "240", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: u32,
 

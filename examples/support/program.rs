@@ -25,9 +25,10 @@ impl Program {
     /// A demo: every flag means what it says.
     pub const fn demo(name: &'static str, about: &'static str) -> Self {
         const EXAMPLES: &[(&str, &str)] = &[
-            ("", "the whole run, with its figures and pictures"),
+            ("", "a window to fly about in; the next line's run where there is no display"),
+            ("--headless", "the whole flight, with its figures and pictures"),
             ("--frames 60 --oracle", "check each frame against the exact visible set"),
-            ("--policy frustum", "what the view frustum alone would leave to draw"),
+            ("--headless --policy frustum", "what the view frustum alone would leave to draw"),
             ("--set preset=paper", "the tree with the rule and the constants of the 2005 paper"),
         ];
         Self { name, about, examples: EXAMPLES, frames: "240", full_detail: false, refused: &[] }

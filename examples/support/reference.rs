@@ -17,7 +17,8 @@ use super::run::Eye;
 
 /// Looks at frames beside the one that is measured, outside the clock.
 pub struct Reference {
-    painter: Painter,
+    /// Draws what is looked at.
+    pub painter: Painter,
     /// Whether every frame is compared (`--oracle`).
     compare: bool,
     oracle: Oracle,

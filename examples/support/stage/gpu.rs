@@ -1,8 +1,14 @@
 //! A graphics adapter with a device: what an app has anyway, long before it asks what is hidden.
 
-use anyhow::Context;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Duration;
+
+use anyhow::{Context, bail};
 use tercet::query::gpu::{GpuQueries, wgpu};
 use wgpu::{Adapter, AdapterInfo, Backends, Device, DeviceDescriptor, DeviceType, Instance, Queue};
+
+/// How long a frame may take.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A device, and what it runs on.
 #[derive(Clone, Debug)]
@@ -47,6 +53,24 @@ impl Gpu {
             required_limits: adapter.limits(),
             ..Default::default()
         }
+    }
+
+    /// Waits until everything that was submitted is done.
+    ///
+    /// # Errors
+    /// When the device is lost, or takes longer than [`PATIENCE`].
+    pub fn wait(&self) -> anyhow::Result<()> {
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        // A device that is lost meanwhile makes wgpu 30 panic.
+        match catch_unwind(AssertUnwindSafe(|| self.device.poll(wait))) {
+            Ok(polled) => polled.map(drop).with_context(|| format!("{} does not answer", self.adapter())),
+            Err(_) => bail!("{} was lost", self.adapter()),
+        }
+    }
+
+    /// The longest side of a picture.
+    pub fn most_pixels_a_side(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
     }
 
     /// The adapter in words.

@@ -53,11 +53,20 @@ impl Stage {
                 )?;
                 Self::on(gpu, detail)
             }
-            Backend::Auto => match Gpu::open()? {
-                Some(gpu) if gpu.is_hardware() => Self::on(gpu, detail),
-                _ => Ok(Self::software(detail)),
-            },
+            Backend::Auto => Ok(Self::best(Gpu::open(), detail)),
         }
+    }
+
+    /// The GPU if it is one and can be used, and else the CPU: nobody asked for a GPU.
+    pub fn best(gpu: anyhow::Result<Option<Gpu>>, detail: Detail) -> Self {
+        let stage = gpu.and_then(|gpu| match gpu.filter(Gpu::is_hardware) {
+            Some(gpu) => Self::on(gpu, detail),
+            None => Ok(Self::software(detail)),
+        });
+        stage.unwrap_or_else(|error| {
+            println!("The GPU cannot be used ({error:#}): the CPU answers (as with --backend software).");
+            Self::software(detail)
+        })
     }
 
     /// The CPU, drawing as finely as `detail` says.
@@ -68,6 +77,14 @@ impl Stage {
     /// A GPU, likewise.
     pub fn on(gpu: Gpu, detail: Detail) -> anyhow::Result<Self> {
         Ok(Self::Wgpu(Box::new(WgpuStage::new(gpu, detail)?)))
+    }
+
+    /// Draws as finely as this from now on.
+    pub fn set_detail(&mut self, detail: Detail) {
+        match self {
+            Self::Software(stage) => stage.painter.detail = detail,
+            Self::Wgpu(stage) => stage.detail = detail,
+        }
     }
 
     /// As `summary.json` calls it.

@@ -13,7 +13,7 @@ use crate::support::run::Eye;
 /// The software backend, with the renderer for its passes.
 pub struct SoftwareStage {
     pub(super) queries: Watched<SoftwareQueries>,
-    painter: Painter,
+    pub(super) painter: Painter,
 }
 
 impl SoftwareStage {

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use anyhow::ensure;
 use hecs::World;
 use tercet::draw::{Detail, Renderer, Shading};
 use tercet::geom::{View, Viewport};
@@ -21,7 +22,7 @@ pub struct WgpuStage {
     pub(super) queries: Watched<GpuQueries>,
     renderer: Renderer,
     picture: Picture,
-    detail: Detail,
+    pub(super) detail: Detail,
 }
 
 /// Attachments that are also read: colour by a window, depth by questions.
@@ -39,7 +40,18 @@ impl Picture {
     pub const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 
     /// A picture of a viewport's size.
-    pub fn new(gpu: &Gpu, viewport: Viewport) -> Self {
+    ///
+    /// # Errors
+    /// When the device has no textures of that size.
+    pub fn new(gpu: &Gpu, viewport: Viewport) -> anyhow::Result<Self> {
+        let most = gpu.most_pixels_a_side();
+        ensure!(
+            viewport.width.max(viewport.height) <= most,
+            "{} × {} pixels: {} draws {most} a side at most",
+            viewport.width,
+            viewport.height,
+            gpu.adapter()
+        );
         let texture = |format, usage: TextureUsages| {
             let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("picture"),
@@ -57,11 +69,11 @@ impl Picture {
             });
             texture.create_view(&wgpu::TextureViewDescriptor::default())
         };
-        Self {
+        Ok(Self {
             color: texture(Self::COLOR, TextureUsages::COPY_SRC),
             depth: texture(TextureFormat::Depth32Float, TextureUsages::empty()),
             size: (viewport.width, viewport.height),
-        }
+        })
     }
 
     /// Whether it has a viewport's size.
@@ -106,10 +118,13 @@ impl Picture {
 impl WgpuStage {
     /// Draws as finely as `detail` says.
     pub fn new(gpu: Gpu, detail: Detail) -> anyhow::Result<Self> {
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue)?;
+        let picture = Picture::new(&gpu, Viewport::new(1, 1))?;
+        queries.target(&picture.targets());
         Ok(Self {
-            queries: Watched::new(GpuQueries::new(&gpu.device, &gpu.queue)?),
+            queries: Watched::new(queries),
             renderer: Renderer::new(&gpu.device, &gpu.queue, Some(Picture::COLOR))?,
-            picture: Picture::new(&gpu, Viewport::new(1, 1)),
+            picture,
             gpu,
             detail,
         })
@@ -135,7 +150,7 @@ impl WgpuStage {
         view: &View,
     ) -> anyhow::Result<Drawn> {
         if !self.picture.fits(view.viewport()) {
-            self.picture = Picture::new(&self.gpu, view.viewport());
+            self.picture = Picture::new(&self.gpu, view.viewport())?;
             self.queries.backend().target(&self.picture.targets());
         }
         let Self { queries, renderer, .. } = self;
@@ -145,7 +160,7 @@ impl WgpuStage {
             triangles += renderer.draw(pass, world, objects).triangles;
         })?;
         let start = Instant::now();
-        self.gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
+        self.gpu.wait()?;
         stats.wait += start.elapsed();
         Ok(Drawn { stats, triangles })
     }

@@ -16,8 +16,7 @@ use super::fly::Fly;
 use super::screenshot::Screenshots;
 use super::{PANELS, frozen, panel, pick, plots};
 use crate::support::flags::Flags;
-use crate::support::scenario::Scenario;
-use crate::support::stage::{Gpu, Picture, Stage};
+use crate::support::stage::{Picture, Stage};
 
 const LAYER_KEYS: [Key; 6] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
 
@@ -43,10 +42,8 @@ pub struct App {
 }
 
 impl App {
-    /// The window of a scenario, on the device that it has.
-    pub fn new(flags: &Flags, scenario: Scenario, gpu: Gpu) -> anyhow::Result<Self> {
-        let display = Display::new(&gpu)?;
-        let mut engine = Engine::new(flags, scenario, gpu)?;
+    /// The window of an engine.
+    pub fn new(flags: &Flags, mut engine: Engine, display: Display) -> anyhow::Result<Self> {
         engine.scene.sync(&engine.scenario.world);
         // Across the scene in half a minute.
         let speed = engine.bounds().size().length() / 30.0;
@@ -111,13 +108,15 @@ impl App {
         ctx.input(|input| self.fly.steer(input, &response, has_keys));
         let part = if self.engine.paused { 0.0 } else { self.stride };
         self.fly.follow(&self.engine.scenario.flight, part);
-        let side = |points: f32| ((points * ctx.pixels_per_point()) as u32).clamp(1, Viewport::MAX_SIDE);
+        let most = self.engine.gpu().most_pixels_a_side().min(Viewport::MAX_SIDE);
+        let side = |points: f32| ((points * ctx.pixels_per_point()) as u32).clamp(1, most);
         let viewport = Viewport::new(side(size.x), side(size.y));
         let view = self.engine.view(self.fly.pose(), viewport)?;
         self.engine.stage.keep_questions(self.layers.proxies);
+        self.engine.watches_movers = self.layers.awake;
         let done = self.engine.frame(self.fly.pose(), viewport);
         self.look_under(&response, &view);
-        let picture = self.display.draw(&self.engine, &view, &self.layers, self.marked);
+        let picture = self.display.draw(&self.engine, &view, &self.layers, self.marked)?;
         self.paint(ui, frame, &response, &picture);
         if let (Some(_), Some(culled)) = (self.engine.frozen, &self.engine.culled) {
             let reach = f64::from(self.engine.bounds().size().length()) * 0.4;
@@ -166,8 +165,9 @@ impl eframe::App for App {
         let done = CentralPanel::no_frame().show(ui, |ui| self.picture(ui, frame));
         if let Err(error) = done.inner {
             self.say(format!("{error:#}"));
-            // Nothing is lost: the CPU goes on.
-            if let Stage::Wgpu(_) = self.engine.stage {
+            // If the device fails in culling, the CPU can still cull for as long as it draws.
+            let device = matches!(error.downcast_ref(), Some(tercet::Error::Device { .. }));
+            if device && matches!(self.engine.stage, Stage::Wgpu(_)) {
                 let next = self.engine.use_gpu(false).map(|()| "going on in software".to_owned());
                 self.say(format!("{error:#}: {}", next.unwrap_or_else(|error| format!("{error:#}"))));
             }

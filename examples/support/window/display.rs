@@ -4,8 +4,8 @@
 use eframe::egui::TextureId;
 use eframe::egui_wgpu::RenderState;
 use tercet::draw::{Lines, Renderer, Shading};
-use tercet::geom::{Aabb, View};
-use tercet::query::gpu::wgpu;
+use tercet::geom::{Aabb, View, Viewport};
+use tercet::query::gpu::wgpu::{self, TextureView};
 use tercet::scene::ObjectRef;
 
 use super::engine::Engine;
@@ -48,7 +48,8 @@ pub struct Display {
     renderer: Renderer,
     /// The window's own attachments; those of the engine serve where they show the same.
     own: Picture,
-    id: Option<TextureId>,
+    /// What the user interface shows, and its name there.
+    shown: Option<(TextureView, TextureId)>,
     /// Reused by each frame.
     boxes: Vec<(Aabb, [u8; 4])>,
 }
@@ -58,17 +59,23 @@ impl Display {
     pub fn new(gpu: &Gpu) -> anyhow::Result<Self> {
         Ok(Self {
             renderer: Renderer::new(&gpu.device, &gpu.queue, Some(Picture::COLOR))?,
-            own: Picture::new(gpu, tercet::geom::Viewport::new(1, 1)),
-            id: None,
+            own: Picture::new(gpu, Viewport::new(1, 1))?,
+            shown: None,
             boxes: Vec::new(),
         })
     }
 
     /// Draws what `view` shows of the engine's last frame. The box of `marked` is drawn over all.
-    pub fn draw(&mut self, engine: &Engine, view: &View, layers: &Layers, marked: Option<Aabb>) -> Picture {
+    pub fn draw(
+        &mut self,
+        engine: &Engine,
+        view: &View,
+        layers: &Layers,
+        marked: Option<Aabb>,
+    ) -> anyhow::Result<Picture> {
         let gpu = engine.gpu();
         if !self.own.fits(view.viewport()) {
-            self.own = Picture::new(gpu, view.viewport());
+            self.own = Picture::new(gpu, view.viewport())?;
         }
         // Drawn by the engine, from where the user looks?
         let ready = match &engine.stage {
@@ -109,19 +116,26 @@ impl Display {
         }
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
-        picture
+        Ok(picture)
     }
 
     /// The picture as the user interface knows it.
     pub fn texture(&mut self, state: &RenderState, picture: &Picture) -> TextureId {
-        let mut renderer = state.renderer.write();
-        let nearest = wgpu::FilterMode::Nearest;
-        match self.id {
-            Some(id) => {
-                renderer.update_egui_texture_from_wgpu_texture(&state.device, &picture.color, nearest, id);
-                id
-            }
-            None => *self.id.insert(renderer.register_native_texture(&state.device, &picture.color, nearest)),
+        let view = &picture.color;
+        if let Some((shown, id)) = &self.shown
+            && shown == view
+        {
+            return *id;
         }
+        let (mut renderer, nearest) = (state.renderer.write(), wgpu::FilterMode::Nearest);
+        let id = match &self.shown {
+            Some((_, id)) => {
+                renderer.update_egui_texture_from_wgpu_texture(&state.device, view, nearest, *id);
+                *id
+            }
+            None => renderer.register_native_texture(&state.device, view, nearest),
+        };
+        self.shown = Some((view.clone(), id));
+        id
     }
 }

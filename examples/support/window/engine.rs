@@ -5,7 +5,6 @@ use std::collections::VecDeque;
 use tercet::Culler;
 use tercet::draw::Detail;
 use tercet::geom::{Aabb, View, Viewport};
-use tercet::policy;
 use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::TreeConfig;
 use tercet::worlds::Pose;
@@ -43,41 +42,48 @@ pub struct Engine {
     pub frozen: Option<Pose>,
     /// Whether the world stands still.
     pub paused: bool,
-    /// By slot: where objects were in the frame before.
+    /// Whether it is to be known what moves.
+    pub watches_movers: bool,
+    /// By slot: where objects were in the frame before, if that is to be known.
     places: Vec<Option<Aabb>>,
     reference: Reference,
     gpu: Gpu,
+    flags: Flags,
     frames: u32,
 }
 
 impl Engine {
-    /// A scenario on the backend that the flags name; the window's own device is there anyway.
-    pub fn new(flags: &Flags, scenario: Scenario, gpu: Gpu) -> anyhow::Result<Self> {
+    /// The backend that the flags name; the window's own device is there anyway.
+    pub fn stage(flags: &Flags, gpu: &Gpu) -> anyhow::Result<Stage> {
+        let detail = flags.detail()?;
+        match flags.backend {
+            Backend::Software => Ok(Stage::software(detail)),
+            Backend::Wgpu => Stage::on(gpu.clone(), detail),
+            Backend::Auto => Ok(Stage::best(Ok(Some(gpu.clone())), detail)),
+        }
+    }
+
+    /// A scenario on a backend.
+    pub fn new(flags: &Flags, scenario: Scenario, stage: Stage, gpu: Gpu) -> anyhow::Result<Self> {
         let (detail, tree) = (flags.detail()?, flags.tree()?);
-        let on_gpu = match flags.backend {
-            Backend::Auto => gpu.is_hardware(),
-            named => named == Backend::Wgpu,
-        };
-        let mut engine = Self {
+        Ok(Self {
             scene: Scene::new(SceneConfig { tree: tree.clone(), ..Default::default() }),
             eye: Culler::new(flags.policy()?),
-            stage: Stage::software(detail),
+            stage,
             reference: Reference::new(Painter { detail }, false),
             records: VecDeque::with_capacity(REMEMBERED),
             culled: None,
             frozen: None,
             paused: false,
+            watches_movers: false,
             places: Vec::new(),
             frames: 0,
             scenario,
             detail,
             tree,
             gpu,
-        };
-        if on_gpu {
-            engine.use_gpu(true)?;
-        }
-        Ok(engine)
+            flags: flags.clone(),
+        })
     }
 
     /// Changes the backend. What was learnt about the scene stays: it is the culler's.
@@ -89,9 +95,11 @@ impl Engine {
         Ok(())
     }
 
-    /// Culls with another policy, which has seen nothing yet.
+    /// Culls with another policy, which has seen nothing yet. The dials of the command line are set
+    /// on it as far as it has them.
     pub fn use_policy(&mut self, name: &str) -> anyhow::Result<()> {
-        self.eye = Culler::new(policy::by_name(name)?);
+        let flags = Flags { policy: name.to_owned(), ..self.flags.clone() };
+        self.eye = Culler::new(flags.policy()?);
         Ok(())
     }
 
@@ -103,10 +111,10 @@ impl Engine {
     }
 
     /// Draws everything as finely as this from now on.
-    pub fn use_detail(&mut self, detail: Detail) -> anyhow::Result<()> {
+    pub fn use_detail(&mut self, detail: Detail) {
         self.detail = detail;
-        self.reference = Reference::new(Painter { detail }, false);
-        self.use_gpu(matches!(self.stage, Stage::Wgpu(_)))
+        self.reference.painter = Painter { detail };
+        self.stage.set_detail(detail);
     }
 
     /// Leaves the culling camera where it is, or lets it go with the user's again.
@@ -127,8 +135,10 @@ impl Engine {
         let view = self.view(self.frozen.unwrap_or(camera), viewport)?;
         let Self { scene, eye, stage, scenario, .. } = self;
         self.places.clear();
-        self.places.resize(scene.slot_bound(), None);
-        scene.objects().for_each(|o| self.places[o.object.id.slot()] = o.bounds);
+        if self.watches_movers {
+            self.places.resize(scene.slot_bound(), None);
+            scene.objects().for_each(|o| self.places[o.object.id.slot()] = o.bounds);
+        }
         let synced = scene.sync(&scenario.world);
         self.reference.look(scene, &scenario.world, &view, eye)?;
         let drawn = stage.frame(eye, scene, &scenario.world, &view)?;
@@ -143,7 +153,7 @@ impl Engine {
         Ok(())
     }
 
-    /// The boxes of what moved in the last frame.
+    /// The boxes of what moved in the last frame: what is awake. Empty unless movers are watched.
     pub fn moved(&self) -> impl Iterator<Item = Aabb> {
         let place = |slot: usize| self.places.get(slot).copied().flatten();
         self.scene.objects().filter_map(move |o| {

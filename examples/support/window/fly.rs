@@ -87,7 +87,9 @@ impl Fly {
 
     /// Where the camera is.
     pub fn pose(&self) -> Pose {
-        let target = self.eye - self.axes().z_axis;
+        // As far ahead as the eye is from the origin: nearer, the direction would be rounded away.
+        let ahead = self.eye.abs().max_element().max(1.0);
+        let target = self.eye - self.axes().z_axis * ahead;
         Pose { eye: self.eye, target, fov_y_degrees: self.fov_y_degrees }
     }
 
@@ -118,6 +120,7 @@ mod tests {
             let fly = Fly::new(&path, 1.0, 1.0);
             let pose = fly.pose();
             let (want, got) = ((target - Vec3::ONE).normalize(), pose.target - pose.eye);
+            let got = got.normalize();
             assert!(want.distance(got) < 1e-5, "{got} instead of {want}");
         }
     }

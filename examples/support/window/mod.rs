@@ -36,23 +36,26 @@ use super::flags::Flags;
 use super::scenario::Scenario;
 use super::stage::Gpu;
 use app::App;
+use display::Display;
+use engine::Engine;
 
 /// A window that could not be opened.
 pub struct NotShown {
     /// Why.
     pub why: anyhow::Error,
     /// What was to be shown.
-    pub scenario: Box<Scenario>,
+    pub scenario: Scenario,
 }
 
 /// Points beside and below the picture for controls and plots.
 const PANELS: (f32, f32) = (300.0, 190.0);
 
-/// Shows a scenario in a window until it is closed.
+/// Shows a scenario in a window until it is closed. Returns it if no window can be opened, to be run
+/// without one.
 ///
 /// # Errors
-/// When no window can be opened, with the scenario, to run it without one.
-pub fn show(flags: &Flags, scenario: Scenario) -> Result<(), NotShown> {
+/// What closed the window.
+pub fn show(flags: &Flags, scenario: Scenario) -> anyhow::Result<Option<NotShown>> {
     let size = [flags.size.0 as f32 + PANELS.0, flags.size.1 as f32 + PANELS.1];
     let setup = WgpuSetupCreateNew {
         device_descriptor: Arc::new(Gpu::descriptor),
@@ -63,24 +66,20 @@ pub fn show(flags: &Flags, scenario: Scenario) -> Result<(), NotShown> {
         wgpu_options: WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..Default::default() },
         ..Default::default()
     };
-    // The window takes the scenario when it is there; until then it can be had back.
+    // The window takes the scenario when everything else is there; until then it can be had back.
     let waiting = Rc::new(RefCell::new(Some(scenario)));
     let taken = waiting.clone();
     let created = Box::new(move |cx: &eframe::CreationContext<'_>| {
         let state = cx.wgpu_render_state.as_ref().context("it has no wgpu device")?;
         let gpu = Gpu::new(&state.adapter, state.device.clone(), state.queue.clone());
+        let (display, stage) = (Display::new(&gpu)?, Engine::stage(flags, &gpu)?);
         let scenario = taken.borrow_mut().take().context("it was opened twice")?;
-        Ok(Box::new(App::new(flags, scenario, gpu)?) as Box<dyn eframe::App>)
+        let engine = Engine::new(flags, scenario, stage, gpu)?;
+        Ok(Box::new(App::new(flags, engine, display)?) as Box<dyn eframe::App>)
     });
-    let result = eframe::run_native(flags.example, options, created);
+    let result = eframe::run_native(flags.example, options, created).map_err(|error| anyhow!("{error}"));
     match (result, waiting.take()) {
-        (Err(error), Some(scenario)) => {
-            Err(NotShown { why: anyhow!("{error}"), scenario: Box::new(scenario) })
-        }
-        (Err(error), None) => {
-            eprintln!("The window was closed: {error}");
-            Ok(())
-        }
-        (Ok(()), _) => Ok(()),
+        (Err(why), Some(scenario)) => Ok(Some(NotShown { why, scenario })),
+        (result, _) => result.map(|()| None),
     }
 }

@@ -19,21 +19,20 @@ F: freeze the culling camera · F12: screenshot
 /// Shows the controls and does what they say.
 ///
 /// # Errors
-/// What a control was set to and cannot be: nothing has changed then.
+/// What a control was set to and cannot be: that one has changed nothing.
 pub fn show(ui: &mut Ui, engine: &mut Engine, fly: &mut Fly, layers: &mut Layers) -> anyhow::Result<()> {
     ScrollArea::vertical()
         .show(ui, |ui| {
             figures(ui, engine);
             ui.separator();
-            backend(ui, engine)?;
-            policy(ui, engine)?;
+            let result = backend(ui, engine).and(policy(ui, engine));
             ui.separator();
             camera(ui, engine, fly);
             view(ui, layers);
             ui.separator();
-            all_dials(ui, engine)?;
+            let result = result.and(all_dials(ui, engine));
             CollapsingHeader::new("Keys").show(ui, |ui| ui.small(KEYS));
-            Ok(())
+            result
         })
         .inner
 }
@@ -103,18 +102,36 @@ fn view(ui: &mut Ui, layers: &mut Layers) {
 }
 
 fn all_dials(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
-    let heading = |text| CollapsingHeader::new(RichText::new(text).strong()).default_open(true);
-    let mut result = Ok(());
-    let known = engine.eye.policy().dials();
-    if !known.is_empty() {
-        heading("Dials of the policy").show(ui, |ui| {
-            for (key, value) in dials::show(ui, engine.eye.policy().name(), &known) {
-                result = engine.eye.policy_mut().set(key, &value).map_err(Into::into);
+    let (policy, tree) = (policy_dials(ui, engine), tree_dials(ui, engine));
+    section(ui, "Detail", |ui| {
+        let mut error = engine.detail.max_error_px;
+        ui.horizontal(|ui| {
+            ui.label("max_error_px")
+                .on_hover_text("how far a coarser mesh may lie from the true one, pixels");
+            if ui.add(DragValue::new(&mut error).speed(0.02).range(0.0..=100.0)).changed() {
+                engine.use_detail(Detail { max_error_px: error });
             }
         });
+    });
+    policy.and(tree)
+}
+
+fn policy_dials(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
+    let known = engine.eye.policy().dials();
+    if known.is_empty() {
+        return Ok(());
     }
-    heading("Dials of the tree").show(ui, |ui| {
-        let mut tree = engine.tree.clone();
+    let name = engine.eye.policy().name();
+    let turned = section(ui, "Dials of the policy", |ui| dials::show(ui, name, &known));
+    for (key, value) in turned.into_iter().flatten() {
+        engine.eye.policy_mut().set(key, &value)?;
+    }
+    Ok(())
+}
+
+fn tree_dials(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
+    let mut tree = engine.tree.clone();
+    let turned = section(ui, "Dials of the tree", |ui| {
         let mut turned = dials::show(ui, "tree", &tree.dials());
         ui.horizontal(|ui| {
             for preset in ["stable", "paper"] {
@@ -123,24 +140,18 @@ fn all_dials(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
                 }
             }
         });
-        for (key, value) in turned {
-            match tree.set(key, &value) {
-                Ok(()) => engine.use_tree(tree.clone()),
-                Err(error) => result = Err(error.into()),
-            }
-        }
+        turned
     });
-    heading("Detail").show(ui, |ui| {
-        let mut error = engine.detail.max_error_px;
-        ui.horizontal(|ui| {
-            ui.label("max_error_px")
-                .on_hover_text("how far a coarser mesh may lie from the true one, pixels");
-            if ui.add(DragValue::new(&mut error).speed(0.02).range(0.0..=100.0)).changed() {
-                result = engine.use_detail(Detail { max_error_px: error });
-            }
-        });
-    });
-    result
+    for (key, value) in turned.into_iter().flatten() {
+        tree.set(key, &value)?;
+        engine.use_tree(tree.clone());
+    }
+    Ok(())
+}
+
+/// What is in a section, if it is open.
+fn section<R>(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui) -> R) -> Option<R> {
+    CollapsingHeader::new(RichText::new(title).strong()).default_open(true).show(ui, contents).body_returned
 }
 
 /// Why each object under the cursor is drawn or not.

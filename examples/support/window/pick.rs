@@ -30,8 +30,14 @@ fn enters(bounds: Aabb, from: DVec3, ahead: DVec3) -> Option<f32> {
     let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
     let (mut first, mut last) = (0.0, f64::INFINITY);
     for axis in 0..3 {
+        if ahead[axis] == 0.0 {
+            // Between the planes of these sides all along, or never.
+            if !(min[axis]..=max[axis]).contains(&from[axis]) {
+                return None;
+            }
+            continue;
+        }
         let to = [min, max].map(|side| (side[axis] - from[axis]) / ahead[axis]);
-        // A ray along the side is between its planes or misses: 0/0 is ignored by min and max.
         first = f64::max(first, to[0].min(to[1]));
         last = f64::min(last, to[0].max(to[1]));
     }
@@ -56,5 +62,6 @@ mod tests {
         assert_eq!(hit(DVec3::new(0.0, 0.0, -5.0), DVec3::X), Some(0.0));
         assert_eq!(hit(DVec3::ZERO, DVec3::Z), None);
         assert_eq!(hit(DVec3::X * 3.0, DVec3::NEG_Z), None);
+        assert_eq!(hit(DVec3::X, DVec3::NEG_Z), Some(4.0), "along a side");
     }
 }

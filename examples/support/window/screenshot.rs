@@ -1,6 +1,7 @@
 //! The window as a PNG.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
 use anyhow::Context as _;
@@ -9,8 +10,7 @@ use eframe::egui::{ColorImage, Context, ScreenshotCallback, ViewportCommand};
 /// Pictures that were asked for and have not arrived.
 #[derive(Default)]
 pub struct Screenshots {
-    waiting: Option<Receiver<std::sync::Arc<ColorImage>>>,
-    taken: u32,
+    waiting: Option<Receiver<Arc<ColorImage>>>,
 }
 
 impl Screenshots {
@@ -29,8 +29,7 @@ impl Screenshots {
     pub fn save(&mut self, folder: &Path) -> Option<anyhow::Result<PathBuf>> {
         let image = self.waiting.as_ref()?.try_recv().ok()?;
         self.waiting = None;
-        self.taken += 1;
-        let file = folder.join(format!("screenshot_{}.png", self.taken));
+        let file = (1..).map(|n| folder.join(format!("screenshot_{n}.png"))).find(|file| !file.exists())?;
         Some(write(&file, &image).map(|()| file))
     }
 }

@@ -13,7 +13,8 @@ pub type Color = [u8; 4];
 const VISIBLE: Color = [90, 220, 100, 255];
 const REMEMBERED: Color = [80, 190, 230, 255];
 const HIDDEN: Color = [235, 70, 60, 255];
-const STRADDLE_VISIBLE: Color = [200, 210, 60, 255];
+const STRADDLE_VISIBLE: Color = [235, 225, 60, 255];
+const STRADDLE_REMEMBERED: Color = [150, 140, 230, 255];
 const STRADDLE_HIDDEN: Color = [225, 80, 220, 255];
 const CULLED: Color = [160, 40, 35, 170];
 const AWAKE: Color = [255, 160, 40, 255];
@@ -21,18 +22,20 @@ const AWAKE: Color = [255, 160, 40, 255];
 pub const MARKED: Color = [255, 255, 255, 255];
 
 /// What the colours mean.
-const LEGEND: [(Color, &str); 8] = [
-    (VISIBLE, "node: asked this frame, visible"),
-    (REMEMBERED, "node: taken as visible, not asked"),
-    (HIDDEN, "node: asked this frame, hidden"),
-    (STRADDLE_VISIBLE, "straddle node: visible"),
+const LEGEND: [(Color, &str); 9] = [
+    (VISIBLE, "node: asked, visible"),
+    (REMEMBERED, "node: not asked, visible"),
+    (HIDDEN, "node: asked, hidden"),
+    (STRADDLE_VISIBLE, "straddle node: asked, visible"),
+    (STRADDLE_REMEMBERED, "straddle node: not asked, visible"),
     (STRADDLE_HIDDEN, "straddle node: asked, hidden"),
     (CULLED, "object: culled inside the frustum"),
     (AWAKE, "object: awake (has moved)"),
     (MARKED, "under the cursor"),
 ];
 
-/// Gathers the boxes that the layers call for. O(nodes + objects) with a layer on, else O(1).
+/// Gathers the boxes that the layers call for. O(1) without a layer, O(objects) with those of
+/// objects; that of nodes is as slow as [`Culler::fates`](tercet::Culler::fates).
 pub fn boxes(engine: &Engine, layers: &Layers, boxes: &mut Vec<(Aabb, Color)>) {
     let Some(view) = &engine.culled else { return };
     if layers.nodes {
@@ -72,8 +75,9 @@ fn of_fate(fate: Fate, is_straddle: bool) -> Option<Color> {
         (Fate::Hidden, false) => Some(HIDDEN),
         (Fate::Hidden, true) => Some(STRADDLE_HIDDEN),
         (Fate::Visible { .. }, false) => Some(VISIBLE),
-        (Fate::Visible { .. } | Fate::Remembered { .. } | Fate::Near, true) => Some(STRADDLE_VISIBLE),
+        (Fate::Visible { .. }, true) => Some(STRADDLE_VISIBLE),
         (Fate::Remembered { .. } | Fate::Near, false) => Some(REMEMBERED),
+        (Fate::Remembered { .. } | Fate::Near, true) => Some(STRADDLE_REMEMBERED),
         (Fate::Unknown | Fate::Unasked | Fate::Given | Fate::Outside | Fate::NotReached, _) => None,
     }
 }
