@@ -40,7 +40,7 @@ const GROUND: u8 = 255;
 
 /// A city: houses, parks, cars and balloons.
 pub fn build() -> World {
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
     let mut city = City(World::new());
     city.put(BOX, vec3(0.0, -0.5, 0.0), vec3(HALF, 0.5, HALF), [96, 118, 70, GROUND]);
     for (x, z) in (-BLOCKS..BLOCKS).flat_map(|x| (-BLOCKS..BLOCKS).map(move |z| (x, z))) {
@@ -80,17 +80,21 @@ pub fn driven(Bounds(at): &Bounds, Velocity(by): &Velocity) -> Bounds {
     Bounds(Aabb::from_center(center, 0.5 * at.size()))
 }
 
-/// Down a street, a few metres above it.
+/// Down a street, above the trees.
 pub fn eye_view(frame: u32, [width, height]: [u32; 2]) -> Result<View, Error> {
     let eye = eye(frame);
-    View::look_at(eye, eye + vec3(-0.32, -0.2, -1.0), 60.0, 0.2, Viewport::new(width, height))
+    View::look_at(eye, eye + vec3(-0.3, -0.25, -1.0), 60.0, 0.2, Viewport::new(width, height))
 }
 
 /// From the sun down to what lies before the eye. Rays of the sun are parallel.
-pub fn sun_view(frame: u32) -> Result<View, Error> {
+pub fn sun_view(frame: u32, [width, height]: [u32; 2]) -> Result<View, Error> {
     let lit = eye(frame) + vec3(-20.0, 0.0, -130.0);
     let view_from_world = glam::camera::rh::view::look_at_mat4(lit + 300.0 * toward_sun(), lit, Vec3::Y);
-    View::new(view_from_world, projection::orthographic(340.0, 340.0, 1.0, 600.0), Viewport::new(2048, 2048))
+    View::new(
+        view_from_world,
+        projection::orthographic(340.0, 340.0, 1.0, 600.0),
+        Viewport::new(width, height),
+    )
 }
 
 /// A unit vector.
@@ -99,7 +103,7 @@ pub fn toward_sun() -> Vec3 {
 }
 
 fn eye(frame: u32) -> Vec3 {
-    vec3(4.0, 18.0, 210.0 - 0.4 * frame as f32)
+    vec3(4.0, 26.0, 210.0 - 0.4 * frame as f32)
 }
 
 struct City(World);

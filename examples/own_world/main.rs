@@ -25,6 +25,9 @@ use tercet::scene::{Bounds, Scene, SceneConfig};
 use tercet::{Culler, Error, FrameStats};
 use wgpu::{TextureFormat, TextureUsages, TextureView};
 
+/// The shadow map's sides, in pixels.
+const SHADOW_MAP: [u32; 2] = [2048; 2];
+
 fn main() -> anyhow::Result<()> {
     let policy = std::env::args().nth(1).unwrap_or_else(|| "dual-query".to_owned());
     let picture = run(&policy, 40, [1920, 1080])?;
@@ -40,7 +43,7 @@ pub fn run(policy: &str, frames: u32, size: [u32; 2]) -> anyhow::Result<RgbaImag
     let gpu = Gpu::new(world.len())?;
     // Depth is what questions are put to, so shaders must be able to read it.
     let (attachment, readable) = (TextureUsages::RENDER_ATTACHMENT, TextureUsages::TEXTURE_BINDING);
-    let shadows = gpu.texture([2048; 2], TextureFormat::Depth32Float, attachment | readable);
+    let shadows = gpu.texture(SHADOW_MAP, TextureFormat::Depth32Float, attachment | readable);
     let depth = gpu.texture(size, TextureFormat::Depth32Float, attachment | readable);
     let color = gpu.texture(size, TextureFormat::Rgba8UnormSrgb, attachment | TextureUsages::COPY_SRC);
     let [shadow_map, depth, colors] = [&shadows, &depth, &color].map(|t| t.create_view(&Default::default()));
@@ -60,7 +63,7 @@ pub fn run(policy: &str, frames: u32, size: [u32; 2]) -> anyhow::Result<RgbaImag
         }
         scene.sync(&world);
 
-        let (eye_view, sun_view) = (city::eye_view(frame, size)?, city::sun_view(frame)?);
+        let (eye_view, sun_view) = (city::eye_view(frame, size)?, city::sun_view(frame, SHADOW_MAP)?);
         gpu.upload(&world, &eye_view, &sun_view);
         // In turn, because the picture is lit by the shadow map. Views that need nothing of one
         // another (split screens, two lamps) can be drawn at once, in `std::thread::scope`: a

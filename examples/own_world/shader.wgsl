@@ -1,8 +1,8 @@
 // Boxes and balls in the light of a low sun. Vertices are made here, from their numbers.
 
 struct Frame {
-    clip_from_world: mat4x4<f32>,
-    clip_from_world_by_sun: mat4x4<f32>,
+    eye_clip_from_world: mat4x4<f32>,
+    sun_clip_from_world: mat4x4<f32>,
     eye: vec4<f32>,
     toward_sun: vec4<f32>,
 }
@@ -60,13 +60,13 @@ fn corner(vertex: u32, object: Object) -> Corner {
 
 // What the sun sees: depth alone.
 @vertex fn sun(@builtin(vertex_index) vertex: u32, object: Object) -> @builtin(position) vec4<f32> {
-    return frame.clip_from_world_by_sun * vec4(corner(vertex, object).world, 1.0);
+    return frame.sun_clip_from_world * vec4(corner(vertex, object).world, 1.0);
 }
 
 @vertex fn eye(@builtin(vertex_index) vertex: u32, object: Object) -> Vertex {
     let c = corner(vertex, object);
     let linear = vec4(pow(object.color.rgb, vec3(2.2)), object.color.a);
-    return Vertex(frame.clip_from_world * vec4(c.world, 1.0), c.world, c.normal, linear);
+    return Vertex(frame.eye_clip_from_world * vec4(c.world, 1.0), c.world, c.normal, linear);
 }
 
 @fragment fn shade(in: Vertex) -> @location(0) vec4<f32> {
@@ -82,7 +82,7 @@ fn corner(vertex: u32, object: Object) -> Corner {
 // The share of the sun's light that arrives: nine comparisons with the nearest thing it sees,
 // each of them smoothed by the sampler. Depth is reversed: greater is nearer.
 fn sunlit(world: vec3<f32>) -> f32 {
-    let clip = frame.clip_from_world_by_sun * vec4(world, 1.0);
+    let clip = frame.sun_clip_from_world * vec4(world, 1.0);
     let uv = clip.xy * vec2(0.5, -0.5) + 0.5;
     let texel = 1.0 / vec2<f32>(textureDimensions(shadows));
     var sum = 0.0;
