@@ -96,10 +96,10 @@ fn runs(gpu: &Gpu) -> Vec<(GpuConfig, &'static [&'static str], u64)> {
     let mut runs = vec![(default.clone(), all, 5)];
     for counting in supported(gpu) {
         let config = GpuConfig { counting: Some(counting), ..default.clone() };
-        runs.push((config, &["dual-query", "statistical"], 2));
+        runs.push((config, &["dual-query", "statistical"], 4));
     }
     let native = GpuConfig { any: AnyBy::Native, ..default };
-    runs.push((native, &["statistical", "stop-and-wait"], 3));
+    runs.push((native, &["statistical", "stop-and-wait"], 5));
     runs
 }
 

@@ -161,6 +161,41 @@ fn many_boxes_fit() {
     }
 }
 
+/// More queries than a set holds, and fewer than the sets that are there.
+#[test]
+fn many_native_queries_fit() {
+    for gpu in gpus() {
+        let view = view();
+        let depth = depth_texture(&gpu, &view);
+        let half = ClipSpace::new(&gpu, &view, &half_wall(&view, 0.5));
+        let mut queries = gpu.exact_queries(GpuConfig { any: AnyBy::Native, ..Default::default() });
+        queries.target(&targets(&depth, false));
+        for count in [1, 9000, 3, 4097] {
+            queries.begin(&view).expect("begin");
+            queries.draw(|pass| half.draw(pass)).expect("draw");
+            let pixel = |i: u32| (i % SIDE, i / SIDE % SIDE);
+            for i in 0..count {
+                let (x0, y0) = pixel(i);
+                let rect = PixelRect { x0, y0, x1: x0 + 1, y1: y0 + 1 };
+                let hidden = flat(PixelRect { x0: 0, y0: 0, x1: SIDE / 2, y1: SIDE }, 0.25);
+                queries.ask(Ticket(i), &[hidden, flat(rect, 0.25)], Want::Any).expect("ask");
+            }
+            // One that is counted in between, and one about nothing.
+            queries.ask(Ticket(count), &[flat(screen(), 0.25)], Want::Dual).expect("ask");
+            queries.ask(Ticket(count + 1), &[], Want::Any).expect("ask");
+            let mut found = answers(&mut queries, Wait::Block).expect("answers");
+            assert_eq!(found.pop(), Some((count + 1, "Any(false)".into())));
+            assert_eq!(found.pop(), Some((count, dual(SIDE * SIDE / 2, SIDE * SIDE))));
+            assert_eq!(found.len(), count as usize);
+            for (i, answer) in found {
+                let visible = pixel(i).0 >= SIDE / 2;
+                assert_eq!(answer, format!("{:?}", Answer::Any(visible)), "{:?}, box {i}", gpu.backend);
+            }
+            queries.end().expect("end");
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_evaluated_is_unknown() {
     for gpu in gpus() {

@@ -2,6 +2,17 @@
 //!
 //! It needs nothing but storage buffers in fragment shaders. The pass draws into a colour target
 //! of the viewport's size that nothing is written to, since a pass must have an attachment.
+//!
+//! # No forced early depth test
+//!
+//! `@early_depth_test(force)` would spare hidden fragments their invocations where a device has it.
+//! It is not used. Forced, the test sees the depth of the triangles, not one that the shader writes;
+//! the entry depth is not planar, and the corners of its faces are snapped, which moves a tilted
+//! plane by more than the bound in `pack.rs`. So it could decide no answer exactly: only sort out
+//! what lies behind a proxy's nearest point. And hidden fragments must run all the same, to be
+//! counted in the total: it would take a second draw of everything. On a software adapter, to
+//! rasterise the pixels of large boxes twice without any fragment shader already takes about as long
+//! as to count them in blocks (docs/measurements/queries.md).
 
 use std::mem::offset_of;
 

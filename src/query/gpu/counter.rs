@@ -24,7 +24,8 @@ pub enum Counting {
     /// In a compute shader, a workgroup for each 64 × 64 pixels of a box, which adds up by itself.
     Workgroups,
     /// As [`Counting::Workgroups`], but the lanes of a subgroup add up among themselves before they
-    /// touch the workgroup's memory. The device needs [`Features::SUBGROUP`].
+    /// touch the workgroup's memory. The device needs [`Features::SUBGROUP`]. Not chosen by
+    /// default: where it was measured, on lavapipe, it is as fast as without.
     Subgroups,
     /// As [`Counting::Workgroups`], but the least and greatest depth of each 8 × 8 pixels is
     /// gathered first, so that most of a large box is decided without looking at its samples.

@@ -63,7 +63,7 @@ impl Terms {
             viewport: view.viewport(),
             samples: view.samples(),
             slack,
-            native_slack: native_slack.map(|more| (slack + more).next_up()),
+            native_slack: native_slack.map(|more| if more > 0.0 { (slack + more).next_up() } else { slack }),
             most_proxies: most / size_of::<PackedProxy>() as u64,
             most_tiles: most / size_of::<PackedTile>() as u64,
         }
