@@ -37,10 +37,11 @@ impl Costs {
     /// Takes a frame's times. A frame that drew or asked nothing, or took no time, tells nothing.
     pub fn learn(&mut self, stats: &FrameStats) {
         let each = |time: Duration, n: u32| time.as_secs_f32() / n as f32;
-        // While answers are waited for, a device draws first.
-        let drawing = stats.device_draw.min(stats.wait);
-        let question = each(stats.policy + stats.query + stats.wait - drawing, stats.queries);
-        let object = each(stats.draw + drawing, stats.drawn);
+        // Who waits for an answer waits for what the device draws before it: that is no part of
+        // asking. The two are of different frames, so the one may be longer than the other.
+        let waited = stats.wait.saturating_sub(stats.awaited_draw);
+        let question = each(stats.policy + stats.query + waited, stats.queries);
+        let object = each(stats.draw + stats.device_draw, stats.drawn);
         let ratio = question / object;
         if ratio.is_finite() && ratio > 0.0 {
             // Of logarithms: twice as dear and half as dear weigh alike.
@@ -78,8 +79,17 @@ mod tests {
         let (mut apart, mut together) = (Costs::default(), Costs::default());
         apart.learn(&frame(100, 10, 900, 20));
         let device_draw = Duration::from_micros(800);
-        together.learn(&FrameStats { device_draw, ..frame(900, 10, 100, 20) });
+        together.learn(&FrameStats { device_draw, awaited_draw: device_draw, ..frame(900, 10, 100, 20) });
         assert_eq!(apart, together);
+    }
+
+    #[test]
+    fn what_is_drawn_after_the_last_question_makes_asking_no_cheaper() {
+        let (mut apart, mut after) = (Costs::default(), Costs::default());
+        apart.learn(&frame(500, 10, 900, 20));
+        let [device_draw, awaited_draw] = [800, 200].map(Duration::from_micros);
+        after.learn(&FrameStats { device_draw, awaited_draw, ..frame(700, 10, 100, 20) });
+        assert_eq!(apart, after);
     }
 
     #[test]

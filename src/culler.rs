@@ -105,8 +105,8 @@ impl<P: Policy> Culler<P> {
         let mut stats = FrameStats::default();
         queries.begin(view)?;
         let draw_time = queries.draw_time();
-        if let DrawTime::Device(time) = draw_time {
-            stats.device_draw = time;
+        if let DrawTime::Device { total, awaited } = draw_time {
+            (stats.device_draw, stats.awaited_draw) = (total, awaited);
         }
         for &slot in scene.objects_store().always() {
             self.drawn.queue(scene, slot);

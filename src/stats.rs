@@ -23,7 +23,9 @@ pub struct FrameStats {
     pub query: Duration,
     /// Time in waiting for answers, what is computed meanwhile included.
     pub wait: Duration,
-    /// What a device took to draw while answers were waited for, in a frame not long ago; zero where
-    /// that is not known, and where draws are done at once.
+    /// What a device took to draw in a frame not long ago; zero where that is not known, and where
+    /// draws are done at once.
     pub device_draw: Duration,
+    /// The part of it that came before the frame's last question, so that answers waited for it.
+    pub awaited_draw: Duration,
 }

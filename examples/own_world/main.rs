@@ -6,7 +6,7 @@
 //!
 //! A camera and the sun look at a city. Both views share one scene; each has its own culler and its
 //! own questions, so the shadow map is culled just as the picture is. The last frame goes to
-//! `own_world.png`: bit for bit what it is without culling (`-- none` draws it so). No window is
+//! `out/own_world.png`: bit for bit what it is without culling (`-- none` draws it so). No window is
 //! needed; `WGPU_BACKEND` chooses between Vulkan, OpenGL and the rest.
 //!
 //! What an app with a renderer has anyway is in `gpu.rs`, `city.rs` and `shader.wgsl`.
@@ -30,15 +30,29 @@ const SHADOW_MAP: [u32; 2] = [2048; 2];
 
 fn main() -> anyhow::Result<()> {
     let policy = std::env::args().nth(1).unwrap_or_else(|| "dual-query".to_owned());
-    let picture = run(&policy, 40, [1920, 1080])?;
+    let Frame { picture, .. } = run(&policy, 40, [1920, 1080])?;
+    std::fs::create_dir_all("out")?;
     // At half the size, edges are smooth.
-    imageops::thumbnail(&picture, 960, 540).save("own_world.png")?;
-    println!("own_world.png is the last frame");
+    imageops::thumbnail(&picture, 960, 540).save("out/own_world.png")?;
+    println!("out/own_world.png is the last frame");
     Ok(())
 }
 
+/// A frame.
+#[derive(Default)]
+pub struct Frame {
+    /// What the camera sees.
+    pub picture: RgbaImage,
+    /// Objects in the scene.
+    pub all: u32,
+    /// Those of them that were drawn in the picture.
+    pub seen: u32,
+    /// Those that were drawn in the shadow map.
+    pub cast: u32,
+}
+
 /// Draws some frames and returns the last one.
-pub fn run(policy: &str, frames: u32, size: [u32; 2]) -> anyhow::Result<RgbaImage> {
+pub fn run(policy: &str, frames: u32, size: [u32; 2]) -> anyhow::Result<Frame> {
     let mut world = city::build();
     let gpu = Gpu::new(world.len())?;
     // Depth is what questions are put to, so shaders must be able to read it.
@@ -56,6 +70,7 @@ pub fn run(policy: &str, frames: u32, size: [u32; 2]) -> anyhow::Result<RgbaImag
     let targets = FrameTargets::new(depth).with_color(colors, sky);
     let mut eye = Camera::new(&gpu, policy, targets, Some(&shadow_map))?;
 
+    let mut last = Frame::default();
     for frame in 0..frames {
         // The app moves its things as it likes. The scene finds out which ones have moved.
         for (bounds, velocity) in world.query_mut::<(&mut Bounds, &Velocity)>() {
@@ -73,10 +88,11 @@ pub fn run(policy: &str, frames: u32, size: [u32; 2]) -> anyhow::Result<RgbaImag
         // What both views have seen decides how finely the scene divides space.
         scene.adapt([&mut sun.culler, &mut eye.culler]);
 
-        let (all, seen, cast) = (scene.len(), seen.drawn, cast.drawn);
+        let (all, seen, cast) = (scene.len() as u32, seen.drawn, cast.drawn);
         println!("frame {frame:2}: of {all} objects, {seen} drawn in the picture, {cast} in the shadow map");
+        last = Frame { all, seen, cast, ..Frame::default() };
     }
-    Ok(gpu.read(&color))
+    Ok(Frame { picture: gpu.read(&color), ..last })
 }
 
 /// A view, with what it draws with.

@@ -69,8 +69,14 @@ pub enum Wait {
 pub enum DrawTime {
     /// [`QueryBackend::draw`] takes it.
     AtOnce,
-    /// A device draws while answers are waited for; in a frame not long ago it took this.
-    Device(Duration),
+    /// A device draws while answers are waited for. This is what it took in a frame not long ago.
+    Device {
+        /// All drawing of the frame.
+        total: Duration,
+        /// The part of it that came before the frame's last question: waiting for answers was
+        /// waiting for this, too. What was drawn after it kept nobody waiting.
+        awaited: Duration,
+    },
     /// The same, and nobody knows how long it takes.
     Unknown,
 }

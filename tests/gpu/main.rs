@@ -1,5 +1,6 @@
 //! The GPU backend, on every adapter that there is, against its twin on the CPU.
 
+mod adapters;
 mod conservative;
 mod failures;
 #[expect(dead_code, reason = "the slow rasteriser in it is for the proxies' own tests")]
@@ -7,6 +8,7 @@ mod failures;
 mod geometry;
 mod lifecycle;
 mod mutations;
+mod parallel;
 #[path = "../support/proxies.rs"]
 mod proxies;
 mod rasteriser;

@@ -52,12 +52,17 @@ pub fn gpus() -> Vec<Gpu> {
         })
         .collect();
     if gpus.is_empty() {
-        let required = std::env::var("TERCET_REQUIRE_GPU").is_ok_and(|value| value == "1");
-        assert!(!required, "there is no adapter for {backends:?}, and TERCET_REQUIRE_GPU is 1");
-        // Not captured by the test harness.
-        let _ = writeln!(std::io::stderr(), "SKIPPED: there is no adapter for {backends:?}");
+        skip(&format!("there is no adapter for {backends:?}"));
     }
     gpus
+}
+
+/// Says aloud why a test, or a part of it, is not done; with `TERCET_REQUIRE_GPU=1` it must be.
+pub fn skip(why: &str) {
+    let required = std::env::var("TERCET_REQUIRE_GPU").is_ok_and(|value| value == "1");
+    assert!(!required, "{why}, and TERCET_REQUIRE_GPU is 1");
+    // Not captured by the test harness.
+    let _ = writeln!(std::io::stderr(), "SKIPPED: {why}");
 }
 
 /// Each way of counting that a device supports.

@@ -20,14 +20,12 @@
 //! these queries take 1 to 4 times as long as common ones around the boxes' own triangles, and counts
 //! a half or less (docs/measurements/queries.md). They are for devices where counting is slow.
 
-use std::mem::offset_of;
 use std::ops::Range;
 
 use wgpu::{
     BindGroup, CompareFunction, DepthStencilState, Device, FragmentState, MultisampleState, PrimitiveState,
     PrimitiveTopology, QuerySet, RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipeline,
-    RenderPipelineDescriptor, ShaderModule, ShaderStages, TextureFormat, TextureView, VertexAttribute,
-    VertexBufferLayout, VertexFormat, VertexState, VertexStepMode,
+    RenderPipelineDescriptor, ShaderModule, ShaderStages, TextureFormat, TextureView, VertexState,
 };
 
 use super::batch::Batch;
@@ -128,16 +126,6 @@ fn pipeline(
     module: &ShaderModule,
     (format, direction, samples): Target,
 ) -> RenderPipeline {
-    let rect = VertexAttribute {
-        format: VertexFormat::Uint32x4,
-        offset: offset_of!(PackedProxy, rect) as u64,
-        shader_location: 0,
-    };
-    let proxies = VertexBufferLayout {
-        array_stride: size_of::<PackedProxy>() as u64,
-        step_mode: VertexStepMode::Instance,
-        attributes: &[rect],
-    };
     let depth_compare = match direction {
         DepthDirection::Reversed => CompareFunction::GreaterEqual,
         DepthDirection::Standard => CompareFunction::LessEqual,
@@ -149,7 +137,7 @@ fn pipeline(
             module,
             entry_point: Some("rectangle"),
             compilation_options: Default::default(),
-            buffers: &[Some(proxies)],
+            buffers: &[Some(PackedProxy::LAYOUT)],
         },
         primitive: PrimitiveState { topology: PrimitiveTopology::TriangleStrip, ..Default::default() },
         depth_stencil: Some(DepthStencilState {

@@ -26,6 +26,8 @@ pub(super) enum Purpose {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(super) struct Times {
     pub(super) draw: Duration,
+    /// The part of `draw` that came before the last question: what an answer had to wait for.
+    pub(super) awaited_draw: Duration,
     pub(super) question: Duration,
 }
 
@@ -81,14 +83,16 @@ pub(super) struct Clock {
     frames: [TimedFrame; MOST_FRAMES],
     /// How many frames there were.
     count: u64,
-    /// Of the last frame whose timestamps have arrived.
+    /// The last frame that could not be timed; 0 for none.
+    untimed: u64,
+    /// Of the last frame whose timestamps have arrived, unless one that is not timed came later.
     times: Option<Times>,
 }
 
 /// Timestamps on their way.
 #[derive(Debug)]
 struct TimedFrame {
-    /// Which of the frames.
+    /// Which of the frames, from 1 on.
     number: u64,
     passes: Vec<Purpose>,
     ticks: ReadBack,
@@ -124,11 +128,13 @@ impl Clock {
                 ticks: ReadBack::new(device, bytes(MOST_PASSES)),
             }),
             count: 0,
+            untimed: 0,
             times: None,
         })
     }
 
-    /// Of the last frame whose timestamps had arrived when this one began.
+    /// Of the last frame whose timestamps had arrived when this one began; None if a later one
+    /// could not be timed.
     pub(super) fn times(&self) -> Option<Times> {
         self.times
     }
@@ -138,16 +144,19 @@ impl Clock {
         self.frames.sort_unstable_by_key(|frame| frame.number);
         for frame in &self.frames {
             let times = frame.ticks.read(|bytes| times(&frame.passes, bytes, self.period));
-            self.times = times.or(self.times);
+            self.times = times.filter(|_| frame.number > self.untimed).or(self.times);
             // What was recorded and not submitted never will be.
             frame.ticks.reclaim();
         }
-        self.count += 1;
         self.finished.clear();
         // A timestamp that was never written must not be waited for.
         if self.submitted == Some(self.passes.len()) && self.passes.len() <= MOST_PASSES {
             std::mem::swap(&mut self.finished, &mut self.passes);
+        } else {
+            // Times of other frames would say nothing about this one: it had more passes, or failed.
+            (self.untimed, self.times) = (self.count, None);
         }
+        self.count += 1;
         self.passes.clear();
         self.submitted = Some(0);
     }
@@ -158,7 +167,7 @@ impl Clock {
         let passes = std::mem::take(&mut self.finished);
         let free = self.frames.iter_mut().find(|frame| frame.ticks.state() == State::Free);
         let Some(frame) = free.filter(|_| !passes.is_empty()) else { return };
-        (frame.number, frame.passes) = (self.count, passes);
+        (frame.number, frame.passes) = (self.count - 1, passes);
         let bytes = bytes(frame.passes.len());
         frame.ticks.claim(device, bytes);
         encoder.resolve_query_set(&self.set, 0..2 * frame.passes.len() as u32, &self.resolved, 0);
@@ -196,13 +205,19 @@ fn bytes(passes: usize) -> u64 {
 /// Adds up what passes took, from ticks before and after each.
 fn times(passes: &[Purpose], bytes: &[u8], period: f64) -> Times {
     let mut times = Times::default();
+    let asked_last = passes.iter().rposition(|&purpose| purpose == Purpose::Question);
     let tick = |bytes: &[u8; 8]| u64::from_le_bytes(*bytes);
-    for (purpose, pair) in passes.iter().zip(bytes.as_chunks::<8>().0.chunks_exact(2)) {
+    for (i, (purpose, pair)) in passes.iter().zip(bytes.as_chunks::<8>().0.chunks_exact(2)).enumerate() {
         // A device that changes its clock may report an end before the beginning.
         let ticks = tick(&pair[1]).saturating_sub(tick(&pair[0]));
         let took = Duration::from_nanos((ticks as f64 * period) as u64);
         match purpose {
-            Purpose::Draw => times.draw += took,
+            Purpose::Draw => {
+                times.draw += took;
+                if asked_last > Some(i) {
+                    times.awaited_draw += took;
+                }
+            }
             Purpose::Question => times.question += took,
         }
     }
@@ -215,10 +230,16 @@ mod tests {
 
     #[test]
     fn times_add_up_by_purpose() {
-        let ticks: [u64; 6] = [10, 40, 100, 150, 200, 190];
+        let ticks: [u64; 8] = [10, 40, 100, 150, 200, 190, 300, 310];
         let bytes: Vec<u8> = ticks.iter().flat_map(|tick| tick.to_le_bytes()).collect();
-        let found = times(&[Purpose::Question, Purpose::Draw, Purpose::Question], &bytes, 2.5);
-        let want = Times { draw: Duration::from_nanos(125), question: Duration::from_nanos(75) };
-        assert_eq!(found, want);
+        let of = |passes: [Purpose; 4]| {
+            let Times { draw, awaited_draw, question } = times(&passes, &bytes, 2.5);
+            [draw, awaited_draw, question].map(|time| time.as_nanos())
+        };
+        use Purpose::{Draw, Question};
+        assert_eq!(of([Question, Draw, Question, Draw]), [150, 125, 75]);
+        assert_eq!(of([Draw, Draw, Draw, Question]), [200, 200, 25]);
+        assert_eq!(of([Question, Draw, Draw, Draw]), [150, 0, 75]);
+        assert_eq!(of([Draw; 4]), [225, 0, 0]);
     }
 }

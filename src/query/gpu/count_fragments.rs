@@ -14,14 +14,11 @@
 //! rasterise the pixels of large boxes twice without any fragment shader already takes about as long
 //! as to count them in blocks (docs/measurements/queries.md).
 
-use std::mem::offset_of;
-
 use wgpu::{
     Color, ColorTargetState, ColorWrites, Device, Extent3d, FragmentState, LoadOp, Operations,
     PrimitiveState, PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
     RenderPipelineDescriptor, ShaderModule, ShaderStages, StoreOp, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages, TextureView, VertexAttribute, VertexBufferLayout, VertexFormat,
-    VertexState, VertexStepMode,
+    TextureFormat, TextureUsages, TextureView, VertexState,
 };
 
 use super::batch::Batch;
@@ -49,16 +46,6 @@ impl CountFragments {
     pub(super) const BUFFERS: &[(u32, bool)] = &[(0, false), (1, true)];
 
     pub(super) fn new(device: &Device, layouts: &Layouts, module: &ShaderModule) -> Self {
-        let rect = VertexAttribute {
-            format: VertexFormat::Uint32x4,
-            offset: offset_of!(PackedProxy, rect) as u64,
-            shader_location: 0,
-        };
-        let proxies = VertexBufferLayout {
-            array_stride: size_of::<PackedProxy>() as u64,
-            step_mode: VertexStepMode::Instance,
-            attributes: &[rect],
-        };
         let nothing = ColorTargetState { format: FORMAT, blend: None, write_mask: ColorWrites::empty() };
         let pipeline = device.create_render_pipeline(&RenderPipelineDescriptor {
             label: Some("tercet count fragments"),
@@ -67,7 +54,7 @@ impl CountFragments {
                 module,
                 entry_point: Some("rectangle"),
                 compilation_options: Default::default(),
-                buffers: &[Some(proxies)],
+                buffers: &[Some(PackedProxy::LAYOUT)],
             },
             primitive: PrimitiveState { topology: PrimitiveTopology::TriangleStrip, ..Default::default() },
             depth_stencil: None,

@@ -88,7 +88,7 @@ use crate::Error;
 use crate::geom::{Proxy, View};
 use ask_natively::AskNatively;
 use batch::Batch;
-use clock::Clock;
+use clock::{Clock, Times};
 use counter::Counters;
 use frame::Frame;
 use pack::{EMULATED_RANGE, PackedFrame};
@@ -111,7 +111,8 @@ pub struct GpuConfig {
     /// Who answers [`Want::Any`]; [`Want::Dual`] is always counted.
     pub any: AnyBy,
     /// How samples are counted; None for the best that the device supports: questions about many
-    /// pixels by [`Counting::Blocks`], about few by [`Counting::Workgroups`].
+    /// pixels by [`Counting::Blocks`], about few by the first of [`Counting::Subgroups`],
+    /// [`Counting::Workgroups`] and [`Counting::Fragments`] that it can do.
     pub counting: Option<Counting>,
     /// The longest that [`Wait::Block`] waits.
     pub timeout: Duration,
@@ -148,8 +149,12 @@ pub struct GpuStats {
     pub submits: u64,
     /// What the device took for the app's draw passes, of the last frame whose timestamps had
     /// arrived when this one began: seldom the one before this. None if none have, if the device
-    /// has not [`Features::TIMESTAMP_QUERY`], and for frames of more than 1024 passes.
+    /// has not [`Features::TIMESTAMP_QUERY`], and after a frame of more than 1024 passes, or one
+    /// that failed, until the timestamps of a later one arrive.
     pub draw_time: Option<Duration>,
+    /// The part of it that came before the last pass that answers questions: what answers had to
+    /// wait for.
+    pub awaited_draw_time: Option<Duration>,
     /// The same for the passes that answer questions.
     pub question_time: Option<Duration>,
 }
@@ -231,8 +236,8 @@ impl GpuQueries {
     }
 
     /// The optional features that a device should be asked for, of those that the adapter has.
-    /// Without them everything works, but for the times in [`GpuStats`] and
-    /// [`Counting::Subgroups`].
+    /// Without them everything works, but for the times in [`GpuStats`]; what
+    /// [`Counting::Subgroups`] would count, [`Counting::Workgroups`] does.
     pub fn wanted_features(adapter: &Adapter) -> Features {
         adapter.features() & (Features::TIMESTAMP_QUERY | Features::SUBGROUP)
     }
@@ -245,7 +250,12 @@ impl GpuQueries {
     /// Counters since the frame began, and times of an earlier one.
     pub fn stats(&self) -> GpuStats {
         let times = self.clock.as_ref().and_then(Clock::times);
-        GpuStats { draw_time: times.map(|t| t.draw), question_time: times.map(|t| t.question), ..self.stats }
+        GpuStats {
+            draw_time: times.map(|times| times.draw),
+            awaited_draw_time: times.map(|times| times.awaited_draw),
+            question_time: times.map(|times| times.question),
+            ..self.stats
+        }
     }
 
     /// Everything that is open will not be answered.
@@ -310,7 +320,11 @@ impl QueryBackend for GpuQueries {
     }
 
     fn draw_time(&self) -> DrawTime {
-        self.stats().draw_time.map_or(DrawTime::Unknown, DrawTime::Device)
+        let times = self.clock.as_ref().and_then(Clock::times);
+        times.map_or(DrawTime::Unknown, |Times { draw, awaited_draw, .. }| DrawTime::Device {
+            total: draw,
+            awaited: awaited_draw,
+        })
     }
 
     fn end(&mut self) -> Result<(), Error> {

@@ -18,7 +18,10 @@
 //! elsewhere, but now to numbers up to 1. All of it is below 8·2⁻²⁴ of depth, which is added to
 //! planes and nearest point ([`EMULATED_RANGE`]).
 
+use std::mem::offset_of;
+
 use bytemuck::{Pod, Zeroable};
+use wgpu::{VertexAttribute, VertexBufferLayout, VertexFormat, VertexStepMode};
 
 use crate::geom::{DepthDirection, PixelRect, Proxy, View, Viewport};
 
@@ -71,6 +74,17 @@ const STEEPEST: f32 = 1e32;
 const GREATEST: f32 = 1e38;
 
 impl PackedProxy {
+    /// Proxies as the instances of a draw: all that their vertices need is the rectangle.
+    pub(super) const LAYOUT: VertexBufferLayout<'static> = VertexBufferLayout {
+        array_stride: size_of::<Self>() as u64,
+        step_mode: VertexStepMode::Instance,
+        attributes: &[VertexAttribute {
+            format: VertexFormat::Uint32x4,
+            offset: offset_of!(Self, rect) as u64,
+            shader_location: 0,
+        }],
+    };
+
     /// None if the proxy cannot be evaluated, and so must be taken as visible. `slack` is added to
     /// its nearness.
     pub(super) fn new(proxy: &Proxy, viewport: Viewport, slack: f32, any: bool) -> Option<Self> {
@@ -148,8 +162,6 @@ fn raised(&[a, b, c]: &[f32; 3], [width, height]: [f32; 2], slack: f32) -> Optio
 
 #[cfg(test)]
 mod tests {
-    use std::mem::{offset_of, size_of};
-
     use wgpu::naga::front::wgsl;
     use wgpu::naga::{Module, TypeInner};
 
