@@ -9,6 +9,7 @@ use tercet::query::software::{SoftwarePass, SoftwareQueries};
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 use tercet::scene::mesh::Mesh;
 use tercet::scene::{Bounds, NeverCull, NotOccluder, ObjectRef, Scene, SceneConfig, Traits};
+use tercet::tree::TreeConfig;
 use tercet::{Culler, Error, FrameStats};
 
 /// A square of side 2 that faces the camera.
@@ -231,7 +232,9 @@ fn what_an_answer_was_lost_for_is_drawn() {
     for i in 0..50 {
         spawn(&mut world, &mesh, at((i % 10) as f32 * 0.5, (i / 10) as f32 * 0.5, -20.0, 0.2));
     }
-    let mut scene = Scene::new(SceneConfig::default());
+    // Nothing adapts here: the leaves are to be fine before the first question.
+    let tree = TreeConfig { unasked_leaf: 2, ..TreeConfig::default() };
+    let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
     scene.sync(&world);
     for name in ["dual-query", "statistical", "stop-and-wait"] {
         for (fault, drawn) in [(Fault::Unknown, 51), (Fault::Silent, 51), (Fault::Twice, 1)] {
@@ -311,10 +314,10 @@ fn unknown_names_are_answered_with_those_that_exist() {
         let error = policy.set("no_such_dial", "1").unwrap_err().to_string();
         assert!(dials.iter().all(|d| error.contains(d.key)), "{error}");
     }
-    let mut tree = tercet::tree::TreeConfig::default();
+    let mut tree = TreeConfig::default();
     for dial in tree.clone().dials() {
         tree.set(dial.key, &dial.value).expect("a dial takes its own value");
         tree.set(dial.key, "nonsense").expect_err("and no nonsense");
     }
-    assert_eq!(tree, tercet::tree::TreeConfig::default());
+    assert_eq!(tree, TreeConfig::default());
 }

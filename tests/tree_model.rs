@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 use proptest::prelude::*;
-use tercet::geom::Aabb;
+use tercet::geom::{Aabb, Frustum, View, Viewport, projection};
 use tercet::scene::{ObjectId, Scene, SceneConfig, Traits};
-use tercet::tree::{SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig, Votes};
+use tercet::tree::{LANES, SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig, Votes, Walk};
 use tercet::{Costs, Voter};
 
 /// One step of a test. Indices are taken modulo what there is.
@@ -85,14 +85,16 @@ fn config() -> impl Strategy<Value = TreeConfig> {
         prop_oneof![Just(Straddlers::Leaf), Just(Straddlers::Split), Just(Straddlers::StayInParent)],
         prop_oneof![Just(TightBoxes::Never), Just(TightBoxes::Settled), Just(TightBoxes::Always)],
         1u32..12,
+        prop_oneof![Just(1u32), 1u32..64],
         any::<bool>(),
     );
-    dials.prop_map(|(axis, plane, straddlers, tight_boxes, bulk_leaf, published)| TreeConfig {
+    dials.prop_map(|(axis, plane, straddlers, tight_boxes, bulk_leaf, unasked_leaf, published)| TreeConfig {
         axis,
         plane,
         straddlers,
         tight_boxes,
         bulk_leaf,
+        unasked_leaf,
         idle_frames: 10,
         ..if published { TreeConfig::paper() } else { TreeConfig::stable() }
     })
@@ -245,7 +247,7 @@ fn coincident_objects_share_a_leaf() {
 /// Objects that could not be told apart can be once they have moved.
 #[test]
 fn coincident_objects_that_spread_are_separated() {
-    let mut scene = Scene::new(SceneConfig::default());
+    let mut scene = Scene::new(SceneConfig { tree: fine(), ..SceneConfig::default() });
     let ids: Vec<_> =
         (0..1000).map(|_| scene.insert(Aabb::new(Vec3::ONE, Vec3::ONE), Traits::default())).collect();
     scene.update();
@@ -264,7 +266,7 @@ fn coincident_objects_that_spread_are_separated() {
 /// The content epoch of every node above an object changes when it moves, and of no other.
 #[test]
 fn epochs_follow_what_moves() {
-    let mut scene = Scene::new(SceneConfig::default());
+    let mut scene = Scene::new(SceneConfig { tree: fine(), ..SceneConfig::default() });
     let at = |i: usize, z: f32| Aabb::from_center(Vec3::new(i as f32 * 4.0, 0.0, z), Vec3::ONE);
     let ids: Vec<_> = (0..64).map(|i| scene.insert(at(i, 0.0), Traits::default())).collect();
     scene.update();
@@ -289,7 +291,7 @@ fn epochs_follow_what_moves() {
 /// A world that has moved far away and gathered there does not keep the depth of its journey.
 #[test]
 fn the_root_grows_and_shrinks_again() {
-    let mut scene = Scene::new(SceneConfig::default());
+    let mut scene = Scene::new(SceneConfig { tree: fine(), ..SceneConfig::default() });
     let at = |p: Vec3, i: usize| {
         Aabb::from_center(p + Vec3::new((i % 10) as f32, (i / 10) as f32, 0.0) * 3.0, Vec3::splat(0.5))
     };
@@ -310,6 +312,11 @@ fn the_root_grows_and_shrinks_again() {
     }
     let after = scene.tree().stats();
     assert!(after.depth <= depth + 60, "depth {depth} became {}", after.depth);
+}
+
+/// The default tree, with leaves as fine before the first question as after it.
+fn fine() -> TreeConfig {
+    TreeConfig { unasked_leaf: 2, ..TreeConfig::default() }
 }
 
 /// Objects in a row, 10 m apart.
@@ -396,4 +403,56 @@ fn leaves_are_as_large_as_the_costs_ask_for() {
     assert_eq!(settle(&[6.5]).2, changes, "a little more or less changes nothing");
     let (mean, ..) = settle(&[6.0, 0.1]);
     assert!(mean < 1.5, "one view asks at nearly no cost: {mean} a leaf");
+}
+
+/// A tree that nobody has asked anything stays coarse; the first question makes it fine at once.
+#[test]
+fn the_first_question_refines_the_tree() {
+    let mut scene = row(2000, TreeConfig::default());
+    for _ in 0..3 {
+        scene.adapt([&mut Ballot(Votes::default())]);
+        scene.update();
+    }
+    let unasked = scene.tree().stats().nodes;
+    assert!((2..200).contains(&unasked), "{unasked} nodes, none of which was asked about");
+    scene.adapt([&mut Ballot(Votes { questions: 1, ..Votes::default() })]);
+    scene.tree().validate().expect("a valid tree");
+    let leaves = scene.tree().nodes().filter(|n| n.is_leaf);
+    assert_eq!(leaves.map(|n| n.own).max(), Some(2), "a question of any kind counts");
+}
+
+/// What a view may see by the tree is what it may see by looking at each object.
+#[test]
+fn a_walk_finds_what_the_frustum_meets() {
+    for tree in [
+        TreeConfig::default(),
+        fine(),
+        TreeConfig::paper(),
+        TreeConfig { straddlers: Straddlers::StayInParent, ..fine() },
+    ] {
+        let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
+        let at = |i: usize| Vec3::new((i * 7 % 41) as f32, (i * 11 % 37) as f32, (i * 13 % 43) as f32) - 20.0;
+        let boxes: Vec<_> =
+            (0..3000).map(|i| Aabb::from_center(at(i), Vec3::splat(0.2 + (i % 9) as f32 * 0.2))).collect();
+        let ids: Vec<_> = boxes.iter().map(|&b| scene.insert(b, Traits::default())).collect();
+        scene.update();
+        let viewport = Viewport::new(640, 360);
+        let upright =
+            View::look_at(Vec3::new(3.0, 1.0, 25.0), Vec3::ZERO, 40.0, 0.1, viewport).expect("a view");
+        let flat = projection::orthographic(20.0, 9.0, 0.1, 30.0);
+        let flat = View::new(upright.view_from_world(), flat, viewport).expect("a view");
+        for view in [upright, flat] {
+            let frustum = Frustum::new(&view);
+            let mut found = Vec::new();
+            Walk::new().run(scene.tree(), &frustum, view.eye(), |block, lanes| {
+                let lanes = (0..LANES).filter(|lane| lanes & (1 << lane) != 0);
+                found.extend(lanes.map(|lane| block.slots[lane] as usize));
+            });
+            found.sort_unstable();
+            let met = ids.iter().zip(&boxes).filter(|(_, b)| frustum.intersects(b));
+            let met: Vec<_> = met.map(|(id, _)| id.slot()).collect();
+            assert!(met.len() > 50 && met.len() < 2500, "{} of 3000", met.len());
+            assert_eq!(found, met);
+        }
+    }
 }

@@ -81,6 +81,10 @@ impl Frustum {
         }
     }
 
+    pub(crate) fn planes(&self) -> &[Plane; 6] {
+        &self.planes
+    }
+
     /// Tests a box against the planes of `mask`: `None` if it is outside, else the planes that
     /// it crosses. The planes that are left out have the box entirely inside, hence everything in
     /// it, hence children need only the mask returned.
@@ -145,15 +149,15 @@ impl Frustum {
 
 /// A linear form and its slack, scaled so that no sum of three products overflows.
 #[derive(Clone, Copy, Debug)]
-struct Plane {
+pub(crate) struct Plane {
     /// n + s, rounded up.
-    upper: [f32; 3],
+    pub(crate) upper: [f32; 3],
     /// n − s, rounded down.
-    lower: [f32; 3],
+    pub(crate) lower: [f32; 3],
     /// d + e, rounded up: for "outside".
-    outer: f32,
+    pub(crate) outer: f32,
     /// d − e, rounded down: for "inside".
-    inner: f32,
+    pub(crate) inner: f32,
 }
 
 impl Plane {

@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_grown_root_leaves_its_memory_to_the_half_that_it_became() {
-        let mut tree = row(TreeConfig { bulk_leaf: 1, ..TreeConfig::stable() });
+        let mut tree = row(TreeConfig { bulk_leaf: 1, unasked_leaf: 1, ..TreeConfig::stable() });
         let mut history = History::default();
         tree.update();
         history.follow(&tree);
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn a_view_that_fell_behind_forgets() {
-        let mut tree = row(TreeConfig { bulk_leaf: 1, ..TreeConfig::stable() });
+        let mut tree = row(TreeConfig { bulk_leaf: 1, unasked_leaf: 1, ..TreeConfig::stable() });
         let mut history = History::default();
         history.follow(&tree);
         history.entry(tree.root()).frame = 5;

@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn leaves_do_not_all_come_due_together() {
-        let mut tree = Tree::new(TreeConfig { bulk_leaf: 1, ..TreeConfig::default() });
+        let mut tree = Tree::new(TreeConfig { bulk_leaf: 1, unasked_leaf: 1, ..TreeConfig::default() });
         (0..64).for_each(|i| tree.insert(i, &Aabb::from_center(Vec3::X * 3.0 * i as f32, Vec3::ONE)));
         tree.update();
         let (costs, seen) = (Costs::of(100.0), turnover(0, 1000, 100));

@@ -1,6 +1,6 @@
 //! Direct edits: insert, move, remove, rebase.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 use hecs::Entity;
 
 use super::Scene;
@@ -8,7 +8,6 @@ use super::components::Traits;
 use super::object::ObjectId;
 use super::objects::Place;
 use crate::geom::Aabb;
-use crate::tree::Tree;
 
 impl Scene {
     /// Adds an object, without an entity. Its box may be bad: then it is drawn always.
@@ -29,7 +28,14 @@ impl Scene {
     /// Moves many objects, in time proportional to their number: for apps that know what moved.
     /// Returns how many handles were no longer valid. The update is included.
     pub fn sync_moved(&mut self, moved: impl IntoIterator<Item = (ObjectId, Aabb)>) -> usize {
-        let stale = moved.into_iter().filter(|&(id, bounds)| !self.set_bounds(id, bounds)).count();
+        let mut stale = 0;
+        for (id, bounds) in moved {
+            if self.objects.is_plain(id) && is_valid(&bounds) {
+                self.tree.set_bounds(id.slot() as u32, &bounds);
+            } else if !self.set_bounds(id, bounds) {
+                stale += 1;
+            }
+        }
         self.update();
         stale
     }
@@ -57,7 +63,7 @@ impl Scene {
         let boxes: Vec<(u32, Aabb)> =
             self.objects.slots().filter_map(|slot| Some((slot, self.tree.aabb_of(slot)?))).collect();
         self.origin = origin;
-        self.tree = Tree::new(self.tree.config().clone());
+        self.tree = self.tree.emptied();
         // Histories are about nodes that are gone: cullers begin anew.
         self.id.1 += 1;
         for (slot, aabb) in boxes {
@@ -109,6 +115,14 @@ impl Scene {
         };
         self.objects.set_place(slot, place);
     }
+}
+
+/// [`Aabb::is_valid`], without a branch: of two numbers in order, neither is NaN, and both are
+/// finite if the lesser one is above −∞ and the greater one below ∞.
+#[inline]
+fn is_valid(bounds: &Aabb) -> bool {
+    let (min, max) = (Vec3A::from(bounds.min), Vec3A::from(bounds.max));
+    (min.cmple(max) & min.cmpge(Vec3A::MIN) & max.cmple(Vec3A::MAX)).all()
 }
 
 /// The box with its slack. A slack that is not a length makes the box bad, not smaller.

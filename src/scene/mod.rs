@@ -36,7 +36,7 @@ pub use sync::{BadEdit, SyncReport};
 use crate::Error;
 use crate::culler::Voter;
 use crate::geom::Aabb;
-use crate::tree::{Tree, TreeConfig};
+use crate::tree::{Tree, TreeConfig, Votes};
 use objects::{Objects, Place};
 use sync::Mirror;
 
@@ -71,6 +71,8 @@ pub struct Scene {
     objects: Objects,
     tree: Tree,
     mirror: Mirror,
+    /// The votes of one adaptation, kept for their memory.
+    ballots: Vec<Votes>,
     /// Edits since the last update.
     pending: usize,
 }
@@ -84,6 +86,7 @@ impl Scene {
             objects: Objects::default(),
             tree: Tree::new(config.tree),
             mirror: Mirror::default(),
+            ballots: Vec::new(),
             pending: 0,
         }
     }
@@ -144,11 +147,17 @@ impl Scene {
         views: impl IntoIterator<Item = &'a mut V>,
     ) -> Duration {
         let start = Instant::now();
-        let mut views: Vec<_> = views.into_iter().collect();
-        self.tree.adapt(views.iter().map(|v| v.votes()));
-        for view in &mut views {
-            view.votes_mut().clear();
+        let mut count = 0;
+        for view in views {
+            if count == self.ballots.len() {
+                self.ballots.push(Votes::default());
+            }
+            // The view gets an old list to fill, the memory of which is kept.
+            self.ballots[count].clear();
+            std::mem::swap(&mut self.ballots[count], view.votes_mut());
+            count += 1;
         }
+        self.tree.adapt(self.ballots[..count].iter());
         start.elapsed()
     }
 

@@ -1,8 +1,11 @@
-//! The objects of a scene, in struct-of-arrays by slot. Their boxes live in the tree's blocks.
+//! The objects of a scene, in struct-of-arrays by slot. Their boxes live in the tree.
+//!
+//! What nearly every object lacks (slack, a batch, being drawn always) has arrays that are no
+//! longer than the last slot that needs them.
 
 use hecs::Entity;
 
-use super::components::Traits;
+use super::components::{Batch, Mobility, Traits};
 use super::object::{ObjectId, ObjectRef};
 
 /// Where an object is kept, and how it is drawn.
@@ -18,16 +21,31 @@ pub(crate) enum Place {
     Bad,
 }
 
-const NOT_OCCLUDER: u8 = 1;
+/// What is known of an object, in a byte: its place, then its traits.
+type State = u8;
+const PLACE: State = 0b11;
+const NOT_OCCLUDER: State = 1 << 2;
+const NEVER_CULL: State = 1 << 3;
+/// It has a slack, in the array of slacks.
+const SLACK: State = 1 << 4;
+/// It has a batch, in the array of batches.
+const BATCH: State = 1 << 5;
+const STATIC: State = 1 << 6;
+const DYNAMIC: State = 1 << 7;
+
+/// Marks the generation of a slot that is not plain: not in the tree, drawn always, or with slack.
+/// So one compare with a handle's generation tells that it is valid, and nothing is special.
+const SPECIAL: u32 = 1 << 31;
 
 /// Slots, their generations and what is known of each object.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Objects {
+    /// The generation, and [`SPECIAL`] where it applies.
     generation: Vec<u32>,
     entity: Vec<Entity>,
-    place: Vec<Place>,
-    flags: Vec<u8>,
-    traits: Vec<Traits>,
+    state: Vec<State>,
+    slack: Vec<f32>,
+    batch: Vec<Batch>,
     free: Vec<u32>,
     live: usize,
     /// Objects that are drawn always, in no particular order.
@@ -40,16 +58,13 @@ impl Objects {
     pub(crate) fn insert(&mut self, entity: Entity, traits: Traits) -> ObjectId {
         let slot = self.free.pop().unwrap_or_else(|| {
             let slot = self.generation.len() as u32;
-            self.generation.push(0);
+            self.generation.push(SPECIAL);
             self.entity.push(Entity::DANGLING);
-            self.place.push(Place::Free);
-            self.flags.push(0);
-            self.traits.push(Traits::default());
-            self.always_at.push(0);
+            self.state.push(Place::Free as State);
             slot
         });
         self.entity[slot as usize] = entity;
-        self.place[slot as usize] = Place::Tree;
+        self.state[slot as usize] = Place::Tree as State;
         self.set_traits(slot, traits);
         self.live += 1;
         self.id(slot)
@@ -59,8 +74,9 @@ impl Objects {
         self.set_place(slot, Place::Free);
         let s = slot as usize;
         // A slot whose generations are used up is retired: no handle is ever valid twice.
-        if let Some(next) = self.generation[s].checked_add(1) {
-            self.generation[s] = next;
+        let next = (self.generation[s] & !SPECIAL) + 1;
+        self.generation[s] = next | SPECIAL;
+        if next < SPECIAL - 1 {
             self.free.push(slot);
         }
         self.entity[s] = Entity::DANGLING;
@@ -69,10 +85,11 @@ impl Objects {
 
     pub(crate) fn set_place(&mut self, slot: u32, place: Place) {
         let kept_apart = |p| matches!(p, Place::Always | Place::Bad);
-        let old = std::mem::replace(&mut self.place[slot as usize], place);
+        let old = self.place(slot);
+        self.set_state(slot, self.state[slot as usize] & !PLACE | place as State);
         match (kept_apart(old), kept_apart(place)) {
             (false, true) => {
-                self.always_at[slot as usize] = self.always.len() as u32;
+                *entry(&mut self.always_at, slot) = self.always.len() as u32;
                 self.always.push(slot);
             }
             (true, false) => {
@@ -87,16 +104,50 @@ impl Objects {
     }
 
     pub(crate) fn set_traits(&mut self, slot: u32, traits: Traits) {
-        self.flags[slot as usize] = if traits.not_occluder { NOT_OCCLUDER } else { 0 };
-        self.traits[slot as usize] = traits;
+        let state = self.state[slot as usize] & PLACE | state_of(&traits);
+        self.set_state(slot, state);
+        if state & SLACK != 0 {
+            *entry(&mut self.slack, slot) = traits.slack;
+        }
+        if let Some(batch) = traits.batch {
+            *entry(&mut self.batch, slot) = batch;
+        }
     }
 
     pub(crate) fn traits(&self, slot: u32) -> Traits {
-        self.traits[slot as usize]
+        let (s, state) = (slot as usize, self.state[slot as usize]);
+        let mobility = match state & (STATIC | DYNAMIC) {
+            STATIC => Mobility::Static,
+            DYNAMIC => Mobility::Dynamic,
+            _ => Mobility::Unknown,
+        };
+        Traits {
+            mobility,
+            never_cull: state & NEVER_CULL != 0,
+            not_occluder: state & NOT_OCCLUDER != 0,
+            slack: if state & SLACK != 0 { self.slack[s] } else { 0.0 },
+            batch: (state & BATCH != 0).then(|| self.batch[s]),
+        }
+    }
+
+    /// Whether an object has these very traits. Slacks are compared bit for bit: one that is NaN
+    /// is the same bad slack as before.
+    #[inline]
+    pub(crate) fn has_traits(&self, slot: u32, traits: &Traits) -> bool {
+        let (s, state) = (slot as usize, self.state[slot as usize] & !PLACE);
+        state == state_of(traits)
+            && (state & SLACK == 0 || self.slack[s].to_bits() == traits.slack.to_bits())
+            && (state & BATCH == 0 || Some(self.batch[s]) == traits.batch)
+    }
+
+    /// Whether a handle is that of an object in the tree whose box needs no slack: the common case.
+    #[inline]
+    pub(crate) fn is_plain(&self, id: ObjectId) -> bool {
+        self.generation.get(id.slot()) == Some(&id.generation())
     }
 
     pub(crate) fn place(&self, slot: u32) -> Place {
-        self.place[slot as usize]
+        [Place::Free, Place::Tree, Place::Always, Place::Bad][(self.state[slot as usize] & PLACE) as usize]
     }
 
     pub(crate) fn entity(&self, slot: u32) -> Entity {
@@ -104,18 +155,18 @@ impl Objects {
     }
 
     pub(crate) fn is_occluder(&self, slot: u32) -> bool {
-        self.flags[slot as usize] & NOT_OCCLUDER == 0
+        self.state[slot as usize] & NOT_OCCLUDER == 0
     }
 
     /// The slot of a handle that is still valid.
     pub(crate) fn slot(&self, id: ObjectId) -> Option<u32> {
         let s = id.slot();
-        let valid = self.generation.get(s) == Some(&id.generation()) && self.place[s] != Place::Free;
-        valid.then_some(s as u32)
+        let valid = self.generation.get(s).is_some_and(|g| g & !SPECIAL == id.generation());
+        (valid && self.state[s] & PLACE != Place::Free as State).then_some(s as u32)
     }
 
     pub(crate) fn id(&self, slot: u32) -> ObjectId {
-        ObjectId::new(slot, self.generation[slot as usize])
+        ObjectId::new(slot, self.generation[slot as usize] & !SPECIAL)
     }
 
     pub(crate) fn object(&self, slot: u32) -> ObjectRef {
@@ -131,16 +182,46 @@ impl Objects {
     }
 
     pub(crate) fn slots(&self) -> impl Iterator<Item = u32> {
-        (0..self.place.len() as u32).filter(|&s| self.place[s as usize] != Place::Free)
+        (0..self.state.len() as u32).filter(|&s| self.place(s) != Place::Free)
     }
 
     pub(crate) fn slot_bound(&self) -> usize {
-        self.place.len()
+        self.state.len()
+    }
+
+    fn set_state(&mut self, slot: u32, state: State) {
+        self.state[slot as usize] = state;
+        let is_plain = state & (PLACE | NEVER_CULL | SLACK) == Place::Tree as State;
+        let generation = &mut self.generation[slot as usize];
+        *generation = *generation & !SPECIAL | if is_plain { 0 } else { SPECIAL };
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        self.generation.capacity()
-            * (size_of::<u32>() + size_of::<Entity>() + size_of::<Place>() + 1 + size_of::<Traits>())
-            + (self.free.capacity() + self.always.capacity()) * size_of::<u32>()
+        self.generation.capacity() * size_of::<u32>()
+            + self.entity.capacity() * size_of::<Entity>()
+            + self.state.capacity()
+            + self.slack.capacity() * size_of::<f32>()
+            + self.batch.capacity() * size_of::<Batch>()
+            + (self.free.capacity() + self.always.capacity() + self.always_at.capacity()) * size_of::<u32>()
     }
+}
+
+/// The traits' share of a state.
+fn state_of(traits: &Traits) -> State {
+    let flag = |bit, is_set| if is_set { bit } else { 0 };
+    flag(NOT_OCCLUDER, traits.not_occluder)
+        | flag(NEVER_CULL, traits.never_cull)
+        | flag(SLACK, traits.slack.to_bits() != 0)
+        | flag(BATCH, traits.batch.is_some())
+        | flag(STATIC, traits.mobility == Mobility::Static)
+        | flag(DYNAMIC, traits.mobility == Mobility::Dynamic)
+}
+
+/// A slot's place in an array that is only as long as it must be.
+fn entry<T: Clone + Default>(array: &mut Vec<T>, slot: u32) -> &mut T {
+    let s = slot as usize;
+    if s >= array.len() {
+        array.resize(s + 1, T::default());
+    }
+    &mut array[s]
 }

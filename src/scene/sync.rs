@@ -157,10 +157,7 @@ impl Scene {
 
     /// Takes over an entity's new box and components; false if they are the old ones.
     fn change(&mut self, slot: u32, bounds: Aabb, traits: Traits) -> bool {
-        let old = self.objects.traits(slot);
-        // Bit for bit: a slack that is NaN is the same bad slack as before.
-        let same_traits = old.slack.to_bits() == traits.slack.to_bits()
-            && (old.never_cull, old.not_occluder) == (traits.never_cull, traits.not_occluder);
+        let same_traits = self.objects.has_traits(slot, &traits);
         let same_box = match self.objects.place(slot) {
             Place::Tree => self.tree.aabb_of(slot) == Some(grown(bounds, traits.slack)),
             // Drawn always: only whether the box is good matters.
@@ -168,10 +165,10 @@ impl Scene {
             Place::Bad => !grown(bounds, traits.slack).is_valid(),
             Place::Free => false,
         };
-        self.objects.set_traits(slot, traits);
         if same_traits && same_box {
             return false;
         }
+        self.objects.set_traits(slot, traits);
         self.set_slot_bounds(slot, bounds);
         true
     }

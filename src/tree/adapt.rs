@@ -15,11 +15,11 @@
 
 use glam::Vec3;
 
-use super::blocks::Run;
 use super::build::Extent;
 use super::config::LeafSize;
 use super::node::{Evidence, NodeId};
-use super::place::REFIT;
+use super::refit::REGROUPED;
+use super::runs::Run;
 use super::{Edit, Tree};
 use crate::Costs;
 
@@ -41,6 +41,8 @@ pub struct Votes {
     pub forward: Vec3,
     /// What asking and drawing cost this view.
     pub costs: Costs,
+    /// Questions that it asked, of any kind.
+    pub questions: u32,
     /// In the order of the answers.
     pub votes: Vec<Vote>,
 }
@@ -49,6 +51,7 @@ impl Votes {
     /// Forgets all votes and keeps the memory.
     pub fn clear(&mut self) {
         self.votes.clear();
+        self.questions = 0;
     }
 
     /// A vote from counts.
@@ -63,8 +66,8 @@ impl Votes {
     }
 }
 
-/// Nodes looked at a frame in the search for leaves that nobody sees.
-const IDLE_SCAN: usize = 256;
+/// Rounds through all nodes, in the time that makes leaves idle, in the search for such leaves.
+const IDLE_ROUNDS: usize = 2;
 
 /// Frames for which an answer speaks for a merge: a view skips its questions for less, by default.
 const FRESH_FRAMES: u32 = 32;
@@ -76,7 +79,12 @@ impl Tree {
         for (vote, _) in all.clone() {
             self.weigh(vote);
         }
-        self.find_leaf_size(ballots);
+        // Builds and merges read the blocks.
+        self.refresh();
+        self.find_leaf_size(ballots.clone());
+        if !self.asked && ballots.into_iter().any(|b| b.questions > 0 || !b.votes.is_empty()) {
+            self.refine();
+        }
         let (mut splits, mut merges) = (self.config.budget, self.config.budget);
         for (vote, forward) in all.clone() {
             if splits > 0 && self.may_split(vote.node) && self.split(vote.node.index, forward) {
@@ -231,14 +239,15 @@ impl Tree {
         self.nodes.join(parent, self.tick);
         self.log.push(Edit::Merged { parent: self.nodes.id(parent), children: ids });
         self.stats.merges += 1;
-        self.touch(parent, REFIT);
+        self.touch(parent, REGROUPED);
     }
 
     /// Merges leaves that qualify by their counts and that no view has asked about for long: out
     /// of view or behind a hidden ancestor, a fine division earns nothing.
     fn merge_idle(&mut self, mut budget: u32) {
         let capacity = self.nodes.capacity();
-        for _ in 0..IDLE_SCAN.min(capacity) {
+        let looked_at = (IDLE_ROUNDS * capacity).div_ceil(self.config.idle_frames as usize);
+        for _ in 0..looked_at.min(capacity) {
             self.idle_cursor = (self.idle_cursor + 1) % capacity;
             let node = self.idle_cursor as u32;
             if budget == 0 || !self.nodes.is_alive(node) || !self.fits_in_leaf(node) {

@@ -1,98 +1,27 @@
-//! The boxes of the objects, sixteen to a block, each coordinate contiguous.
+//! The boxes of the objects: by slot, as the app gave them, and in blocks of sixteen by node.
 //!
-//! A node's objects fill a *run*: a power of two of consecutive blocks, dense from the front.
-//! Lanes past the end hold the empty box, which is neutral under union and outside every
-//! frustum, so that loops over a run need no tail.
+//! ```text
+//!   known[slot]  ◀── written by edits, in the app's order     (half a line of memory an edit)
+//!      │ refresh: block by block, the lanes that moved
+//!      ▼
+//!   blocks[run of a node]  ──▶ read by questions, refits and builds, in the tree's order
+//! ```
+//!
+//! A node's objects fill a *run* of consecutive blocks, dense from the front. Lanes past the end
+//! hold the empty box, so that loops over a run need no tail. An edit touches six lines of memory
+//! in a block but one in `known`: so edits go there, and the blocks follow once an update.
 
+use super::block::{Block, LANES};
+use super::runs::{FreeRuns, Run};
 use crate::geom::Aabb;
-
-/// Objects a block: one 512-bit register a coordinate.
-pub const LANES: usize = 16;
 
 /// No object, no node, no block.
 pub(crate) const NONE: u32 = u32::MAX;
+/// An object that has a box, but no lane yet.
+const WAITING: u32 = u32::MAX - 1;
 
-/// Sixteen boxes as six rows of coordinates, and whose they are.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub struct Block {
-    /// Least x, least y, least z.
-    pub min: [[f32; LANES]; 3],
-    /// Greatest x, greatest y, greatest z.
-    pub max: [[f32; LANES]; 3],
-    /// Object slots; `u32::MAX` in lanes that hold no object.
-    pub slots: [u32; LANES],
-}
-
-impl Block {
-    const EMPTY: Self =
-        Self { min: [[f32::INFINITY; LANES]; 3], max: [[f32::NEG_INFINITY; LANES]; 3], slots: [NONE; LANES] };
-
-    /// The box of one lane.
-    pub fn aabb(&self, lane: usize) -> Aabb {
-        Aabb::new(self.min.map(|row| row[lane]).into(), self.max.map(|row| row[lane]).into())
-    }
-
-    fn put(&mut self, lane: usize, slot: u32, aabb: &Aabb) {
-        for axis in 0..3 {
-            self.min[axis][lane] = aabb.min[axis];
-            self.max[axis][lane] = aabb.max[axis];
-        }
-        self.slots[lane] = slot;
-    }
-
-    /// The box around all lanes. Four partial results keep the compiler free to vectorise.
-    fn bounds(&self) -> Aabb {
-        let mut all = Aabb::EMPTY;
-        for axis in 0..3 {
-            all.min[axis] = fold_rows(&self.min[axis], f32::INFINITY, f32::min);
-            all.max[axis] = fold_rows(&self.max[axis], f32::NEG_INFINITY, f32::max);
-        }
-        all
-    }
-}
-
-fn fold_rows(row: &[f32; LANES], start: f32, f: impl Fn(f32, f32) -> f32) -> f32 {
-    let mut part = [start; 4];
-    for chunk in row.chunks_exact(4) {
-        for (p, &x) in part.iter_mut().zip(chunk) {
-            *p = f(*p, x);
-        }
-    }
-    f(f(part[0], part[1]), f(part[2], part[3]))
-}
-
-/// A node's share of the arena.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Run {
-    first: u32,
-    /// The run has `1 << class` blocks.
-    class: u8,
-    /// Objects in it.
-    pub(crate) len: u32,
-}
-
-impl Run {
-    /// A run without any block.
-    pub(crate) const EMPTY: Self = Self { first: NONE, class: 0, len: 0 };
-
-    fn capacity(self) -> u32 {
-        if self.first == NONE { 0 } else { (LANES as u32) << self.class }
-    }
-
-    /// Blocks that hold objects.
-    fn used(self) -> std::ops::Range<usize> {
-        if self.len == 0 {
-            return 0..0;
-        }
-        let first = self.first as usize;
-        first..first + (self.len as usize).div_ceil(LANES)
-    }
-
-    fn location(self, index: u32) -> u32 {
-        self.first * LANES as u32 + index
-    }
-}
+/// Blocks that are skipped at once where nothing has moved.
+const REGION: usize = 64;
 
 /// The arena of blocks, with the way from an object to its lane.
 #[derive(Clone, Debug, Default)]
@@ -100,10 +29,27 @@ pub(crate) struct Blocks {
     blocks: Vec<Block>,
     /// The node that each block belongs to.
     owner: Vec<u32>,
-    /// First blocks of the free runs, by class.
-    free: Vec<Vec<u32>>,
-    /// Block × 16 + lane of each object slot; [`NONE`] for one that is not in the tree.
-    location: Vec<u32>,
+    /// A bit for each lane whose object has a new box since the last refresh.
+    moved: Vec<u16>,
+    /// Whether there is any such bit.
+    stale: bool,
+    free: FreeRuns,
+    /// By object slot.
+    known: Vec<Known>,
+}
+
+/// What is known of an object. Half a line of memory, so that it never lies in two.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+struct Known {
+    /// Its newest box.
+    aabb: Aabb,
+    /// Block × 16 + lane; [`NONE`] for an object that is not in the tree, or [`WAITING`].
+    location: u32,
+}
+
+impl Known {
+    const NOTHING: Self = Self { aabb: Aabb::EMPTY, location: NONE };
 }
 
 impl Blocks {
@@ -112,22 +58,47 @@ impl Blocks {
         &self.blocks[run.used()]
     }
 
-    /// The node that holds an object, if the tree does.
+    /// The node that holds an object, if one does.
     pub(crate) fn owner_of(&self, slot: u32) -> Option<u32> {
         let location = self.location(slot)?;
         Some(self.owner[location / LANES])
     }
 
-    /// The box of an object, if the tree holds it.
+    /// The newest box of an object, if the tree knows it.
     pub(crate) fn aabb_of(&self, slot: u32) -> Option<Aabb> {
-        let location = self.location(slot)?;
-        Some(self.blocks[location / LANES].aabb(location % LANES))
+        self.known.get(slot as usize).filter(|known| known.location != NONE).map(|known| known.aabb)
     }
 
-    /// Overwrites the box of an object that the tree holds. O(1).
+    /// Takes an object's box; its lane is given later.
+    pub(crate) fn announce(&mut self, slot: u32, aabb: &Aabb) {
+        let s = slot as usize;
+        if s >= self.known.len() {
+            grow(&mut self.known, s + 1, Known::NOTHING);
+        }
+        self.known[s] = Known { aabb: *aabb, location: WAITING };
+    }
+
+    /// Whether an object has a box, but no lane yet.
+    pub(crate) fn is_waiting(&self, slot: u32) -> bool {
+        self.known.get(slot as usize).is_some_and(|known| known.location == WAITING)
+    }
+
+    /// Forgets an object that waits for its lane.
+    pub(crate) fn renounce(&mut self, slot: u32) {
+        self.known[slot as usize].location = NONE;
+    }
+
+    /// Notes the new box of an object that the tree knows. O(1), and no block is touched.
+    #[inline]
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) {
-        if let Some(location) = self.location(slot) {
-            self.blocks[location / LANES].put(location % LANES, slot, aabb);
+        let Some(known) = self.known.get_mut(slot as usize) else { return };
+        let location = known.location;
+        if location == NONE {
+            return;
+        }
+        known.aabb = *aabb;
+        if location != WAITING {
+            self.mark(location as usize);
         }
     }
 
@@ -139,10 +110,7 @@ impl Blocks {
         let location = run.location(run.len);
         run.len += 1;
         self.blocks[location as usize / LANES].put(location as usize % LANES, slot, aabb);
-        if slot as usize >= self.location.len() {
-            self.location.resize(slot as usize + 1, NONE);
-        }
-        self.location[slot as usize] = location;
+        self.known[slot as usize].location = location;
     }
 
     /// Takes an object out of its run; the last one of the run takes its lane. Amortised O(1).
@@ -151,66 +119,46 @@ impl Blocks {
         run.len -= 1;
         let last = run.location(run.len) as usize;
         let (last_block, last_lane) = (last / LANES, last % LANES);
+        // What the last one has still to be refreshed by goes with it.
+        let stale = self.moved[last_block] & (1 << last_lane) != 0;
+        self.moved[hole / LANES] &= !(1 << (hole % LANES));
+        self.moved[last_block] &= !(1 << last_lane);
         if hole != last {
             let mover = self.blocks[last_block].slots[last_lane];
             let aabb = self.blocks[last_block].aabb(last_lane);
             self.blocks[hole / LANES].put(hole % LANES, mover, &aabb);
-            self.location[mover as usize] = hole as u32;
+            self.known[mover as usize].location = hole as u32;
+            if stale {
+                self.mark(hole);
+            }
         }
         self.blocks[last_block].put(last_lane, NONE, &Aabb::EMPTY);
-        self.location[slot as usize] = NONE;
+        self.known[slot as usize].location = NONE;
         if run.len == 0 {
             self.release(run);
-        } else if run.class > 0 && run.len * 4 <= run.capacity() {
-            self.resize(run, node, run.class - 1);
+        } else if run.is_sparse() {
+            self.resize(run, node, Run::class_for(2 * run.len));
         }
     }
 
     /// Makes room for `count` objects in a run.
     pub(crate) fn reserve(&mut self, run: &mut Run, node: u32, count: u32) {
         if count > run.capacity() {
-            let class = count.div_ceil(LANES as u32).next_power_of_two().trailing_zeros() as u8;
-            self.resize(run, node, class);
+            self.resize(run, node, Run::class_for(count));
         }
-    }
-
-    /// Moves a run to one of `1 << class` blocks, which must hold its objects.
-    fn resize(&mut self, run: &mut Run, node: u32, class: u8) {
-        let first = self.take_free(class, node);
-        for (i, block) in run.used().enumerate() {
-            self.blocks[first as usize + i] = self.blocks[block];
-            for lane in 0..LANES {
-                let slot = self.blocks[block].slots[lane];
-                if slot != NONE {
-                    self.location[slot as usize] = (first + i as u32) * LANES as u32 + lane as u32;
-                }
-            }
-        }
-        let len = run.len;
-        self.release(run);
-        *run = Run { first, class, len };
     }
 
     /// Gives a run's blocks back. The locations of its objects are the caller's business.
     pub(crate) fn release(&mut self, run: &mut Run) {
-        if run.first != NONE {
-            self.blocks[run.used()].fill(Block::EMPTY);
-            self.free[run.class as usize].push(run.first);
-        }
+        self.blocks[run.used()].fill(Block::EMPTY);
+        self.moved[run.used()].fill(0);
+        self.free.put(*run);
         *run = Run::EMPTY;
     }
 
     /// Hands a run's blocks to another node, as when the root grows.
     pub(crate) fn set_owner(&mut self, run: Run, node: u32) {
-        if run.first != NONE {
-            let first = run.first as usize;
-            self.owner[first..first + (1 << run.class)].fill(node);
-        }
-    }
-
-    /// The box around a run.
-    pub(crate) fn bounds(&self, run: Run) -> Aabb {
-        self.of(run).iter().fold(Aabb::EMPTY, |all, block| all.union(&block.bounds()))
+        self.owner[run.all()].fill(node);
     }
 
     /// The objects of a run, with their boxes, in storage order.
@@ -220,31 +168,93 @@ impl Blocks {
         })
     }
 
+    /// Brings the blocks in step with the boxes, and tells of each that changed whose it is, and how
+    /// many of its objects moved. O(moved objects), and
+    /// a look at two bytes for every sixteen that have not, unless none has.
+    pub(super) fn refresh(&mut self, mut changed: impl FnMut(u32, u32)) {
+        if !std::mem::take(&mut self.stale) {
+            return;
+        }
+        for (region, moved) in self.moved.chunks_mut(REGION).enumerate() {
+            if moved.iter().fold(0, |any, m| any | m) == 0 {
+                continue;
+            }
+            let first = region * REGION;
+            let owners = &self.owner[first..];
+            for ((block, moved), &owner) in self.blocks[first..].iter_mut().zip(moved).zip(owners) {
+                let mut rest = std::mem::take(moved);
+                if rest == 0 {
+                    continue;
+                }
+                changed(owner, rest.count_ones());
+                if rest == u16::MAX {
+                    // All of them: no looking for the next one.
+                    for lane in 0..LANES {
+                        block.set(lane, &self.known[block.slots[lane] as usize].aabb);
+                    }
+                    continue;
+                }
+                while rest != 0 {
+                    let lane = rest.trailing_zeros() as usize % LANES;
+                    rest &= rest - 1;
+                    block.set(lane, &self.known[block.slots[lane] as usize].aabb);
+                }
+            }
+        }
+    }
+
     /// Memory held, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        self.blocks.capacity() * size_of::<Block>()
-            + self.owner.capacity() * size_of::<u32>()
-            + self.location.capacity() * size_of::<u32>()
-            + self.free.iter().map(|f| f.capacity() * size_of::<u32>()).sum::<usize>()
+        let block = size_of::<Block>() + size_of::<u32>() + size_of::<u16>();
+        self.blocks.capacity() * block + self.known.capacity() * size_of::<Known>() + self.free.bytes()
+    }
+
+    #[inline]
+    fn mark(&mut self, location: usize) {
+        let block = location / LANES;
+        self.moved[block] |= 1 << (location % LANES);
+        self.stale = true;
     }
 
     fn location(&self, slot: u32) -> Option<usize> {
-        self.location.get(slot as usize).filter(|&&l| l != NONE).map(|&l| l as usize)
+        self.known.get(slot as usize).map(|known| known.location as usize).filter(|&l| l < WAITING as usize)
     }
 
-    fn take_free(&mut self, class: u8, node: u32) -> u32 {
-        let class = class as usize;
-        if class >= self.free.len() {
-            self.free.resize_with(class + 1, Vec::new);
+    /// Moves a run to one of another class, which must hold its objects.
+    fn resize(&mut self, run: &mut Run, node: u32, class: u8) {
+        let mut new = self.take_free(class, node);
+        new.len = run.len;
+        for (from, to) in run.used().zip(new.all()) {
+            self.blocks[to] = self.blocks[from];
+            self.moved[to] = self.moved[from];
+            for (lane, &slot) in self.blocks[to].slots.iter().enumerate() {
+                if slot != NONE {
+                    self.known[slot as usize].location = (to * LANES + lane) as u32;
+                }
+            }
         }
-        let blocks = 1 << class;
-        let first = self.free[class].pop().unwrap_or_else(|| {
-            let first = self.blocks.len() as u32;
-            self.blocks.resize(self.blocks.len() + blocks, Block::EMPTY);
-            self.owner.resize(self.blocks.len(), NONE);
-            first
-        });
-        self.owner[first as usize..first as usize + blocks].fill(node);
-        first
+        self.release(run);
+        *run = new;
     }
+
+    fn take_free(&mut self, class: u8, node: u32) -> Run {
+        let run = self.free.take(class).unwrap_or_else(|| {
+            let run = Run::new(self.blocks.len() as u32, class);
+            let total = run.all().end;
+            grow(&mut self.blocks, total, Block::EMPTY);
+            grow(&mut self.owner, total, NONE);
+            grow(&mut self.moved, total, 0);
+            run
+        });
+        self.owner[run.all()].fill(node);
+        run
+    }
+}
+
+/// Lengthens an array, with an eighth to spare: doubling would leave a third of the memory unused.
+pub(super) fn grow<T: Clone>(array: &mut Vec<T>, len: usize, value: T) {
+    if len > array.capacity() {
+        array.reserve_exact(len + len / 8 - array.len());
+    }
+    array.resize(len, value);
 }

@@ -82,6 +82,10 @@ pub struct TreeConfig {
     /// Objects that the bulk build leaves in a leaf, at most, where they can be separated. A leaf
     /// that grows past four times as many is built anew.
     pub bulk_leaf: u32,
+    /// The same, while no view has asked any question and the size of leaves follows the costs:
+    /// then leaves need only be good for frustum tests and cheap to keep. The first questions make
+    /// the leaves as fine as `bulk_leaf` and the costs have them.
+    pub unasked_leaf: u32,
     /// Frames that a node waits after a split before it may merge, and after a merge before it may
     /// split. 0: the published rule, which oscillates.
     pub cooldown: u32,
@@ -109,6 +113,7 @@ impl TreeConfig {
             tight_boxes: TightBoxes::Settled,
             settle_frames: 4,
             bulk_leaf: 12,
+            unasked_leaf: 12,
             cooldown: 0,
             merge_below_split: false,
             budget: u32::MAX,
@@ -133,6 +138,7 @@ impl TreeConfig {
             tight_boxes: TightBoxes::Always,
             settle_frames: 4,
             bulk_leaf: 2,
+            unasked_leaf: 256,
             cooldown: 30,
             merge_below_split: true,
             budget: 1024,
@@ -160,6 +166,7 @@ impl TreeConfig {
             "tight_boxes" => self.tight_boxes = dial::choice(key, value, TIGHT_BOXES)?,
             "settle_frames" => self.settle_frames = dial::number(key, value, 0..=u32::MAX)?,
             "bulk_leaf" => self.bulk_leaf = dial::number(key, value, 1..=1 << 20)?,
+            "unasked_leaf" => self.unasked_leaf = dial::number(key, value, 1..=1 << 20)?,
             "cooldown" => self.cooldown = dial::number(key, value, 0..=u32::MAX)?,
             "merge_below_split" => self.merge_below_split = dial::number(key, value, false..=true)?,
             "budget" => self.budget = dial::number(key, value, 0..=u32::MAX)?,
@@ -183,6 +190,7 @@ impl TreeConfig {
             Dial::choice("tight_boxes", self.tight_boxes, TIGHT_BOXES, "when questions use tight boxes"),
             Dial::new("settle_frames", self.settle_frames, "frames without movement until a node is settled"),
             Dial::new("bulk_leaf", self.bulk_leaf, "objects a leaf that the bulk build aims at"),
+            Dial::new("unasked_leaf", self.unasked_leaf, "the same, until a view asks its first question"),
             Dial::new(
                 "cooldown",
                 self.cooldown,

@@ -7,29 +7,35 @@
 //! merge leaves (`adapt`).
 
 mod adapt;
+mod block;
 mod blocks;
 mod build;
 mod config;
 mod log;
+mod measure;
 mod node;
 mod place;
 mod refit;
+mod runs;
 mod settle;
 mod split;
 mod traverse;
 mod validate;
+mod visit;
 
 pub use adapt::{Vote, Votes};
-pub use blocks::{Block, LANES};
+pub use block::{Block, LANES};
 pub use config::{LeafSize, SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig};
 pub use log::Edit;
 pub(crate) use log::EditLog;
 pub use node::{NodeId, Role};
 pub use traverse::NodeInfo;
+pub use visit::Walk;
 
 use crate::geom::Aabb;
 use blocks::Blocks;
 use node::Nodes;
+use refit::Dirty;
 
 /// Counters of the tree: sizes now, and events since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,18 +66,30 @@ pub struct Tree {
     tick: u32,
     /// Objects whose new box their node does not hold.
     leavers: Vec<u32>,
+    /// Objects that have no node yet; some may have been removed since.
+    arrivals: Vec<u32>,
+    /// How many have no node yet.
+    waiting: usize,
     /// Nodes to refit, by depth.
-    dirty: Vec<Vec<u32>>,
+    dirty: Dirty,
     /// Leaves that have grown past the bulk build's aim.
     crowded: Vec<u32>,
     /// Inner nodes that may have become superfluous.
     thinned: Vec<u32>,
     /// `O_split` as the costs have it.
     o_split: u32,
+    /// Whether any view has asked a question so far.
+    asked: bool,
     /// Where the search for idle leaves goes on.
     idle_cursor: usize,
     /// Reused by builds, splits and merges.
     scratch: Vec<split::Item>,
+    /// Reused as the root grows: nodes that took its content.
+    wrapped: Vec<u32>,
+    /// Reused as the root grows and shrinks: nodes whose depth is to be set.
+    deepening: Vec<(u32, u16)>,
+    /// Reused by builds: what is still to be split.
+    stack: Vec<build::Task>,
 }
 
 impl Tree {
@@ -82,6 +100,7 @@ impl Tree {
     pub fn new(config: TreeConfig) -> Self {
         Self {
             o_split: config.o_split,
+            asked: false,
             config,
             nodes: Nodes::with_root(),
             blocks: Blocks::default(),
@@ -89,12 +108,22 @@ impl Tree {
             stats: TreeStats::default(),
             tick: 1,
             leavers: Vec::new(),
-            dirty: Vec::new(),
+            arrivals: Vec::new(),
+            waiting: 0,
+            dirty: Dirty::default(),
             crowded: Vec::new(),
             thinned: Vec::new(),
             idle_cursor: 0,
             scratch: Vec::new(),
+            wrapped: Vec::new(),
+            deepening: Vec::new(),
+            stack: Vec::new(),
         }
+    }
+
+    /// A tree without objects that goes on where this one is: it has been asked what this one has.
+    pub(crate) fn emptied(&self) -> Self {
+        Self { asked: self.asked, o_split: self.o_split, ..Self::new(self.config.clone()) }
     }
 
     /// The dials.
@@ -110,7 +139,7 @@ impl Tree {
 
     /// Objects in the tree.
     pub fn len(&self) -> usize {
-        self.nodes.below[0] as usize
+        self.nodes.below[0] as usize + self.waiting
     }
 
     /// Whether it holds no object.

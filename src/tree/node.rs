@@ -12,7 +12,8 @@
 
 use glam::Vec3;
 
-use super::blocks::{NONE, Run};
+use super::blocks::{NONE, grow};
+use super::runs::Run;
 use crate::geom::Aabb;
 
 /// A handle of a node: an index and the index's *identity generation*, which changes whenever the
@@ -196,6 +197,22 @@ impl Nodes {
         self.cell[n].contains(aabb) && !(aabb.min.cmpge(s) | aabb.max.cmple(s)).any()
     }
 
+    /// Whether an object may stay in a node: in the cell, across the planes, and, in an inner
+    /// node, still cut by its plane.
+    pub(crate) fn keeps(&self, node: u32, aabb: &Aabb) -> bool {
+        if node == 0 && self.is_leaf(0) {
+            return true;
+        }
+        self.holds(node, aabb) && (self.is_leaf(node) || self.side(node, aabb) == Role::Straddle)
+    }
+
+    /// Whether a node keeps every object within a box: false where that depends on the object.
+    pub(crate) fn keeps_all_within(&self, node: u32, bounds: &Aabb) -> bool {
+        let n = node as usize;
+        self.is_leaf(node)
+            && (node == 0 || self.straddled[n].is_nan_mask().all() && self.cell[n].contains(bounds))
+    }
+
     /// Which child of an inner node a box belongs to.
     pub(crate) fn side(&self, node: u32, aabb: &Aabb) -> Role {
         side(aabb, self.axis[node as usize] as usize, self.plane[node as usize])
@@ -264,24 +281,24 @@ impl Nodes {
     fn grow(&mut self, count: usize) -> u32 {
         let first = self.capacity();
         let total = first + count;
-        self.cell.resize(total, Aabb::EMPTY);
-        self.straddled.resize(total, Vec3::NAN);
-        self.bounds.resize(total, Aabb::EMPTY);
-        self.parent.resize(total, NONE);
-        self.child.resize(total, NONE);
-        self.role.resize(total, Role::Root);
-        self.axis.resize(total, 0);
-        self.plane.resize(total, 0.0);
-        self.depth.resize(total, 0);
-        self.run.resize(total, Run::EMPTY);
-        self.below.resize(total, 0);
-        self.identity.resize(total, 0);
-        self.epoch.resize(total, 0);
-        self.moved_at.resize(total, 0);
-        self.changed_at.resize(total, 0);
-        self.evidence.resize(total, Evidence { ratio: 0.0, at: 0 });
-        self.retry_at.resize(total, 0);
-        self.dirty.resize(total, 0);
+        grow(&mut self.cell, total, Aabb::EMPTY);
+        grow(&mut self.straddled, total, Vec3::NAN);
+        grow(&mut self.bounds, total, Aabb::EMPTY);
+        grow(&mut self.parent, total, NONE);
+        grow(&mut self.child, total, NONE);
+        grow(&mut self.role, total, Role::Root);
+        grow(&mut self.axis, total, 0);
+        grow(&mut self.plane, total, 0.0);
+        grow(&mut self.depth, total, 0);
+        grow(&mut self.run, total, Run::EMPTY);
+        grow(&mut self.below, total, 0);
+        grow(&mut self.identity, total, 0);
+        grow(&mut self.epoch, total, 0);
+        grow(&mut self.moved_at, total, 0);
+        grow(&mut self.changed_at, total, 0);
+        grow(&mut self.evidence, total, Evidence { ratio: 0.0, at: 0 });
+        grow(&mut self.retry_at, total, 0);
+        grow(&mut self.dirty, total, 0);
         first as u32
     }
 }

@@ -5,39 +5,32 @@ use glam::Vec3;
 use super::blocks::NONE;
 use super::config::Straddlers;
 use super::node::Role;
+use super::refit::{CONTENT, REGROUPED};
 use super::{Edit, Tree};
 use crate::geom::Aabb;
 
-/// The node needs its box refitted.
-pub(super) const REFIT: u8 = 1;
-/// Something entered or moved: the content epoch advances as well.
-pub(super) const CONTENT: u8 = 2;
-
 impl Tree {
-    /// Adds an object that the tree does not hold. The box must be valid. O(depth).
+    /// Adds an object that the tree does not hold; the next [`Tree::update`] places it. The box
+    /// must be valid. O(1).
     pub(crate) fn insert(&mut self, slot: u32, aabb: &Aabb) {
-        self.hold_in_root(aabb);
-        self.nodes.below[0] += 1;
-        self.descend(0, slot, aabb);
+        self.blocks.announce(slot, aabb);
+        self.arrivals.push(slot);
+        self.waiting += 1;
     }
 
-    /// Gives an object that the tree holds a new box. An object that stays in its cell costs one
-    /// compare; one that leaves is moved by the next [`Tree::update`].
+    /// Gives an object that the tree holds a new box, which must be valid; the next
+    /// [`Tree::update`] looks whether it stays in its cell. O(1).
+    #[inline]
     pub(crate) fn set_bounds(&mut self, slot: u32, aabb: &Aabb) {
-        let Some(node) = self.blocks.owner_of(slot) else { return };
         self.blocks.set(slot, aabb);
-        self.touch(node, REFIT | CONTENT);
-        if !self.stays(node, aabb) {
-            self.leavers.push(slot);
-        } else if self.nodes.retry_at[node as usize] > 0 {
-            // What could not be separated may be by now: every move brings the next try nearer.
-            self.nodes.retry_at[node as usize] -= 1;
-            self.note_crowded(node);
-        }
     }
 
     /// Takes an object out. O(depth).
     pub(crate) fn remove(&mut self, slot: u32) {
+        if self.blocks.is_waiting(slot) {
+            self.blocks.renounce(slot);
+            self.waiting -= 1;
+        }
         let Some(node) = self.blocks.owner_of(slot) else { return };
         self.take(node, slot);
         self.leave_upward(node);
@@ -51,7 +44,7 @@ impl Tree {
             // It may have been removed since, have come back, or be listed twice.
             let Some(node) = self.blocks.owner_of(slot) else { continue };
             let Some(aabb) = self.blocks.aabb_of(slot) else { continue };
-            if self.stays(node, &aabb) {
+            if self.nodes.keeps(node, &aabb) {
                 continue;
             }
             self.take(node, slot);
@@ -78,14 +71,32 @@ impl Tree {
         self.leavers = leavers;
     }
 
-    /// Whether an object may stay where it is: in the cell, and, in an inner node, still cut by
-    /// the plane.
-    fn stays(&self, node: u32, aabb: &Aabb) -> bool {
-        if node == 0 && self.nodes.is_leaf(0) {
-            return true;
+    /// Places the objects that are new: one by one, or, where they are the first, all at once.
+    pub(super) fn place_arrivals(&mut self) {
+        let mut arrivals = std::mem::take(&mut self.arrivals);
+        if self.nodes.is_leaf(0) && arrivals.len() as u32 >= self.build_from() {
+            let waits = |&slot: &u32| Some((slot, self.blocks.aabb_of(slot)?));
+            self.scratch.clear();
+            self.scratch.extend(self.blocks.items(self.nodes.run[0]));
+            arrivals.retain(|&slot| self.blocks.is_waiting(slot));
+            arrivals.sort_unstable();
+            arrivals.dedup();
+            self.scratch.extend(arrivals.iter().filter_map(waits));
+            self.nodes.below[0] += arrivals.len() as u32;
+            arrivals.clear();
+            self.build_all();
         }
-        self.nodes.holds(node, aabb)
-            && (self.nodes.is_leaf(node) || self.nodes.side(node, aabb) == Role::Straddle)
+        for slot in arrivals.drain(..) {
+            // It may have been removed since, or be listed twice.
+            let Some(aabb) = self.blocks.aabb_of(slot).filter(|_| self.blocks.is_waiting(slot)) else {
+                continue;
+            };
+            self.hold_in_root(&aabb);
+            self.nodes.below[0] += 1;
+            self.descend(0, slot, &aabb);
+        }
+        self.waiting = 0;
+        self.arrivals = arrivals;
     }
 
     /// Puts an object into the subtree of a node that holds it and has counted it already.
@@ -99,14 +110,13 @@ impl Tree {
             self.nodes.below[at as usize] += 1;
         }
         self.blocks.push(&mut self.nodes.run[at as usize], at, slot, aabb);
-        self.touch(at, REFIT | CONTENT);
+        self.touch(at, CONTENT | REGROUPED);
         self.note_crowded(at);
     }
 
     /// Lists a leaf for the next build when it has grown to the size from which one is tried.
     fn note_crowded(&mut self, node: u32) {
-        let limit = self.bulk_leaf().max(1).saturating_mul(4);
-        let from = limit.max(self.nodes.retry_at[node as usize]);
+        let from = self.build_from().max(self.nodes.retry_at[node as usize]);
         if self.nodes.is_leaf(node) && self.nodes.run[node as usize].len == from {
             self.crowded.push(node);
         }
@@ -115,7 +125,7 @@ impl Tree {
     /// Takes an object out of its node's run.
     fn take(&mut self, node: u32, slot: u32) {
         self.blocks.remove(&mut self.nodes.run[node as usize], node, slot);
-        self.touch(node, REFIT);
+        self.touch(node, REGROUPED);
     }
 
     fn leave_upward(&mut self, mut node: u32) {
@@ -133,19 +143,6 @@ impl Tree {
         }
     }
 
-    /// Marks a node for the next refit.
-    pub(super) fn touch(&mut self, node: u32, why: u8) {
-        let n = node as usize;
-        if self.nodes.dirty[n] == 0 {
-            let depth = self.nodes.depth[n] as usize;
-            if depth >= self.dirty.len() {
-                self.dirty.resize_with(depth + 1, Vec::new);
-            }
-            self.dirty[depth].push(node);
-        }
-        self.nodes.dirty[n] |= why;
-    }
-
     /// Makes the root's cell hold a box. A root leaf simply takes a larger cell; an inner root
     /// becomes a half of one twice as large, as often as it takes. O(log(distance / size)), and
     /// O(nodes) if it grows at all: their depths change.
@@ -154,7 +151,7 @@ impl Tree {
             self.nodes.cell[0] = self.nodes.cell[0].union(aabb);
             return;
         }
-        let mut wrapped = Vec::new();
+        let mut wrapped = std::mem::take(&mut self.wrapped);
         for axis in 0..3 {
             while aabb.max[axis] > self.nodes.cell[0].max[axis] {
                 wrapped.push(self.grow_root(axis, Role::High));
@@ -164,8 +161,10 @@ impl Tree {
             }
         }
         if !wrapped.is_empty() {
-            self.reorder(wrapped);
+            self.reorder(&wrapped);
+            wrapped.clear();
         }
+        self.wrapped = wrapped;
     }
 
     /// Doubles the root's cell on one axis, toward `new`: the half that is added. Returns the node
@@ -248,7 +247,7 @@ impl Tree {
             self.log.push(Edit::Moved { from, to: self.nodes.id(0) });
         }
         if shrunk {
-            self.reorder(Vec::new());
+            self.reorder(&[]);
         }
     }
 
@@ -264,25 +263,16 @@ impl Tree {
 
     /// After indices near the root have changed: takes every node's depth anew, and lists the
     /// dirty ones by it.
-    fn reorder(&mut self, wrapped: Vec<u32>) {
-        let mut stack = vec![(0, 0)];
+    fn reorder(&mut self, wrapped: &[u32]) {
+        let mut stack = std::mem::take(&mut self.deepening);
+        stack.push((0, 0));
         while let Some((node, depth)) = stack.pop() {
             self.nodes.depth[node as usize] = depth;
             stack.extend(self.nodes.children(node).map(|c| (c, depth + 1)));
         }
-        let mut listed: Vec<u32> = self.dirty.iter_mut().flat_map(std::mem::take).collect();
+        self.deepening = stack;
         // Index 0 and the node that took its content may each be the dirty one: both refit.
-        listed.extend(wrapped);
-        listed.extend(self.nodes.children(0));
-        listed.push(0);
-        for node in listed {
-            let n = node as usize;
-            let alive = self.nodes.is_alive(node);
-            let why = self.nodes.dirty[n] | REFIT;
-            self.nodes.dirty[n] = 0;
-            if alive {
-                self.touch(node, why);
-            }
-        }
+        let near = self.nodes.children(0).chain([0]);
+        self.dirty.relist(&mut self.nodes, wrapped.iter().copied().chain(near));
     }
 }

@@ -1,52 +1,134 @@
 //! Bringing boxes, epochs and stamps up to date, bottom-up.
 
 use super::Tree;
+use super::block::union;
 use super::blocks::NONE;
-use super::place::CONTENT;
+use super::measure::{self, Moved};
+use super::node::Nodes;
+
+/// The node needs its box refitted.
+pub(super) const REFIT: u8 = 1;
+/// Something entered or moved: the content epoch advances as well.
+pub(super) const CONTENT: u8 = 2;
+/// Objects came or went: the box around the node's own objects is out of date.
+pub(super) const REGROUPED: u8 = 4;
+
+/// The nodes to refit, by depth: the deepest go first, so that each parent is seen once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Dirty {
+    levels: Vec<Vec<u32>>,
+    /// Levels that may have nodes.
+    deep: usize,
+    /// Reused when the lists are made anew.
+    listed: Vec<u32>,
+}
+
+impl Dirty {
+    /// Lists a node, once.
+    #[inline]
+    pub(super) fn touch(&mut self, nodes: &mut Nodes, node: u32, why: u8) {
+        let n = node as usize;
+        if nodes.dirty[n] == 0 {
+            let depth = nodes.depth[n] as usize;
+            if depth >= self.levels.len() {
+                self.levels.resize_with(depth + 1, Vec::new);
+            }
+            self.deep = self.deep.max(depth + 1);
+            self.levels[depth].push(node);
+        }
+        nodes.dirty[n] |= why | REFIT;
+    }
+
+    /// Lists all nodes again, and some more, when depths have changed.
+    pub(super) fn relist(&mut self, nodes: &mut Nodes, more: impl Iterator<Item = u32>) {
+        let mut listed = std::mem::take(&mut self.listed);
+        self.levels.iter_mut().for_each(|level| listed.append(level));
+        self.deep = 0;
+        listed.extend(more);
+        for node in listed.drain(..) {
+            let why = std::mem::take(&mut nodes.dirty[node as usize]);
+            if nodes.is_alive(node) {
+                self.touch(nodes, node, why | REGROUPED);
+            }
+        }
+        self.listed = listed;
+    }
+}
 
 impl Tree {
-    /// Brings the tree up to date after edits: moves what has left its cell, builds where it has
-    /// grown crowded, drops nodes that have become superfluous, and refits what has changed.
-    /// O(edits · depth); nothing at all for a tree without edits.
+    /// Brings the tree up to date after edits: moves what has left its cell, places what is new,
+    /// builds where it has grown crowded, drops nodes that have become superfluous, and refits
+    /// what has changed. O(edits · depth), and next to nothing for a tree without edits.
     pub(crate) fn update(&mut self) {
         self.tick = self.tick.wrapping_add(1);
+        self.refresh();
         self.relocate();
+        self.place_arrivals();
         self.build_crowded();
         self.collapse_thinned();
         self.shrink_root();
         self.refit();
     }
 
-    /// Recomputes the boxes of dirty nodes, the deepest first, so that each parent is seen once.
+    /// Takes the moved objects' boxes over into the blocks, and lists those that have left.
+    pub(super) fn refresh(&mut self) {
+        let build_from = self.build_from();
+        let Self { blocks, nodes, dirty, leavers, crowded, .. } = self;
+        blocks.refresh(|node, moved| {
+            dirty.touch(nodes, node, CONTENT);
+            let n = node as usize;
+            if nodes.retry_at[n] > 0 {
+                // What could not be separated may be by now: every move brings the next try nearer.
+                nodes.retry_at[n] = nodes.retry_at[n].saturating_sub(moved);
+                if nodes.is_leaf(node) && nodes.run[n].len >= build_from.max(nodes.retry_at[n]) {
+                    crowded.push(node);
+                }
+            }
+        });
+        for list in &dirty.levels[..dirty.deep] {
+            pulp::Arch::new().dispatch(Moved { list, blocks, nodes, leavers });
+        }
+    }
+
+    /// Marks a node for the next refit.
+    pub(super) fn touch(&mut self, node: u32, why: u8) {
+        self.dirty.touch(&mut self.nodes, node, why);
+    }
+
+    /// Recomputes the boxes of dirty nodes, the deepest first.
     pub(super) fn refit(&mut self) {
-        for depth in (0..self.dirty.len()).rev() {
-            let mut level = std::mem::take(&mut self.dirty[depth]);
+        let Self { blocks, nodes, dirty, tick, .. } = self;
+        for depth in (0..std::mem::take(&mut dirty.deep)).rev() {
+            let mut level = std::mem::take(&mut dirty.levels[depth]);
             for node in level.drain(..) {
                 let n = node as usize;
-                let why = std::mem::take(&mut self.nodes.dirty[n]);
-                if why == 0 || !self.nodes.is_alive(node) {
+                let why = std::mem::take(&mut nodes.dirty[n]);
+                if why == 0 || !nodes.is_alive(node) {
                     continue;
                 }
-                let own = self.blocks.bounds(self.nodes.run[n]);
-                let bounds = self
-                    .nodes
-                    .children(node)
-                    .fold(own, |all, child| all.union(&self.nodes.bounds[child as usize]));
-                self.nodes.bounds[n] = bounds;
-                if node == 0 && self.nodes.is_leaf(0) {
-                    self.nodes.cell[0] = bounds;
+                // A leaf whose objects have only moved was measured as they did.
+                let measured = nodes.is_leaf(node) && why & REGROUPED == 0;
+                let mut bounds =
+                    if measured { nodes.bounds[n] } else { measure::around(blocks.of(nodes.run[n])) };
+                for child in nodes.children(node) {
+                    bounds = union(&bounds, &nodes.bounds[child as usize]);
+                }
+                nodes.bounds[n] = bounds;
+                if node == 0 && nodes.is_leaf(0) {
+                    nodes.cell[0] = bounds;
                 }
                 if why & CONTENT != 0 {
-                    self.nodes.epoch[n] = self.nodes.epoch[n].wrapping_add(1);
-                    self.nodes.moved_at[n] = self.tick;
+                    nodes.epoch[n] = nodes.epoch[n].wrapping_add(1);
+                    nodes.moved_at[n] = *tick;
                 }
-                let parent = self.nodes.parent[n];
+                let parent = nodes.parent[n];
                 if parent != NONE {
-                    self.touch(parent, why);
+                    dirty.touch(nodes, parent, why & CONTENT);
                 }
             }
             // The emptied list keeps its memory for the next frame.
-            self.dirty[depth] = level;
+            dirty.levels[depth] = level;
         }
+        dirty.deep = 0;
     }
 }

@@ -3,7 +3,8 @@
 use glam::{Vec3, Vec4};
 
 use super::Tree;
-use super::blocks::{Block, NONE};
+use super::block::Block;
+use super::blocks::NONE;
 use super::node::{NodeId, Role};
 use crate::geom::Aabb;
 

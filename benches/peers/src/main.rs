@@ -1,0 +1,93 @@
+//! The tree of tercet beside other crates' trees: the same boxes, moves and frustums, in turns in
+//! one process, and the same objects found, which is checked.
+//!
+//! `cargo run --release --manifest-path benches/peers/Cargo.toml [-- --quick]`
+
+mod trees;
+
+#[path = "../../tree_maintenance/clock.rs"]
+mod clock;
+#[path = "../../tree_maintenance/workload.rs"]
+mod workload;
+#[path = "../../tree_maintenance/yardstick.rs"]
+mod yardstick;
+
+use clock::{median, seconds};
+use trees::Peer;
+use workload::Workload;
+use yardstick::Scan;
+
+fn main() {
+    let quick = std::env::args().any(|argument| argument == "--quick");
+    let counts: &[usize] = if quick { &[2_500] } else { &[13_550, 100_000] };
+    println!(
+        "| boxes | tree | update / write | wide / scan | mid / scan | near / scan |\n|---|---|---|---|---|---|"
+    );
+    for &count in counts {
+        let frames = if quick { 10 } else { 40 };
+        let mut all = Vec::new();
+        for row in [
+            run::<trees::tercet::Tercet>("tercet", count, frames),
+            run::<trees::parry::Parry>("parry3d", count, frames),
+            run::<trees::obvhs::Obvhs>("obvhs", count, frames),
+            run::<trees::bvh::Bvh>("bvh", count, frames.min(5)),
+            run::<trees::rstar::Rstar>("rstar", count, frames.min(5)),
+        ] {
+            println!(
+                "| {count} | {} | {:.1} | {:.2} | {:.2} | {:.2} |",
+                row.name, row.update, row.query[0], row.query[1], row.query[2]
+            );
+            all.push(row.checksum);
+        }
+        // Trees that ran for fewer frames stand elsewhere: they are compared at their last common one.
+        assert!(all.iter().all(|sum| sum == &all[0]), "every tree finds the same objects: {all:?}");
+    }
+}
+
+/// One tree: ratios of medians, and what it found in the fifth frame.
+struct Row {
+    name: &'static str,
+    update: f64,
+    query: [f64; 3],
+    checksum: [(usize, u64); 3],
+}
+
+/// Half of the boxes move.
+fn run<P: Peer>(name: &'static str, count: usize, frames: usize) -> Row {
+    let mut load = Workload::new(count, 0.5);
+    let views = load.views().map(|(_, view)| view);
+    let mut tree = P::new(&load.boxes);
+    let (mut writes, mut updates) = (Vec::new(), Vec::new());
+    let (mut scans, mut queries) = ([const { Vec::new() }; 3], [const { Vec::new() }; 3]);
+    let mut checksum = [(0, 0); 3];
+    let mut found = Vec::new();
+    for frame in 0..frames {
+        writes.push(seconds(1, || load.step()));
+        updates.push(seconds(1, || tree.update(load.moved())));
+        for (i, view) in views.iter().enumerate() {
+            let mut scan = Scan::new(&load.boxes);
+            scans[i].push(seconds(2, || scan.run(view)));
+            queries[i].push(seconds(2, || {
+                found.clear();
+                tree.query(view, &mut found);
+            }));
+            if frame == 4 {
+                checksum[i] = sum(&found);
+            }
+        }
+    }
+    let ratio = |a: &[f64], b: &[f64]| median(a) / median(b);
+    Row {
+        name,
+        update: ratio(&updates, &writes),
+        query: [0, 1, 2].map(|i| ratio(&queries[i], &scans[i])),
+        checksum,
+    }
+}
+
+/// Tells sets of objects apart, in whatever order they were found.
+fn sum(found: &[u32]) -> (usize, u64) {
+    let mixed =
+        found.iter().map(|&n| (u64::from(n) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(n % 61));
+    (found.len(), mixed.fold(0, u64::wrapping_add))
+}

@@ -1,0 +1,209 @@
+//! What a view may see by its frustum alone, nearest nodes first: the cheapest question.
+//!
+//! A node's box is tested against all planes at once, a plane a lane. Below a node that lies
+//! within all of them nothing is tested; in a leaf that crosses some, those are tested against
+//! sixteen objects at once. The arithmetic is [`Frustum::classify`]'s, operation by operation
+//! (nothing is fused), so the answers are the same on every machine.
+
+use glam::Vec4;
+use pulp::{Arch, Simd, WithSimd};
+
+use super::Tree;
+use super::block::{Block, LANES};
+use super::measure::bits_of;
+use crate::geom::{Aabb, Frustum};
+
+/// A walk through the tree by a view's frustum; kept, it needs no memory from the second on.
+#[derive(Clone, Debug, Default)]
+pub struct Walk {
+    /// Nodes that meet the frustum, twice the index, and one more if they lie wholly within.
+    stack: Vec<u32>,
+}
+
+impl Walk {
+    /// An empty one.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Hands over each block that has objects whose boxes may meet the frustum, with a bit for
+    /// each lane that does: exactly those that [`Frustum::intersects`]. The nodes come front to
+    /// back as seen from `eye` (see [`View::eye`](crate::geom::View::eye)), by the planes that
+    /// divide them: straddlers between the two halves, in no order within a leaf.
+    ///
+    /// To be called between an update and the next edit. O(nodes that meet the frustum).
+    pub fn run(&mut self, tree: &Tree, frustum: &Frustum, eye: Vec4, found: impl FnMut(&Block, u16)) {
+        self.stack.clear();
+        let stack = &mut self.stack;
+        Arch::new().dispatch(Visit { tree, planes: Planes::new(frustum), eye, stack, found });
+    }
+}
+
+/// A walk under way, to be compiled for each instruction set.
+struct Visit<'a, F> {
+    tree: &'a Tree,
+    planes: Planes,
+    eye: Vec4,
+    stack: &'a mut Vec<u32>,
+    found: F,
+}
+
+impl<F: FnMut(&Block, u16)> WithSimd for Visit<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let nodes = &self.tree.nodes;
+        self.push(simd, 0, false);
+        while let Some(entry) = self.stack.pop() {
+            let (node, within) = (entry >> 1, entry & 1 != 0);
+            self.own(simd, node, within);
+            let first = nodes.child[node as usize];
+            if first == super::blocks::NONE {
+                continue;
+            }
+            let axis = nodes.axis[node as usize] as usize;
+            let high_is_nearer = match self.eye.w {
+                0.0 => self.eye[axis] > 0.0,
+                _ => self.eye[axis] > nodes.plane[node as usize],
+            };
+            let [far, near] = if high_is_nearer { [first, first + 1] } else { [first + 1, first] };
+            for child in [far, first + 2, near] {
+                self.push(simd, child, within);
+            }
+        }
+    }
+}
+
+impl<F: FnMut(&Block, u16)> Visit<'_, F> {
+    /// Puts a node on the way, unless it is empty or outside.
+    #[inline(always)]
+    fn push<S: Simd>(&mut self, simd: S, node: u32, within: bool) {
+        if self.tree.nodes.below[node as usize] == 0 {
+            return;
+        }
+        let within = within || {
+            let [greatest, least] = self.planes.range(simd, &self.tree.nodes.bounds[node as usize]);
+            if (0..Planes::COUNT).fold(false, |any, i| any | (greatest[i] < 0.0)) {
+                return;
+            }
+            (0..Planes::COUNT).fold(true, |all, i| all & (least[i] >= 0.0))
+        };
+        self.stack.push(node << 1 | u32::from(within));
+    }
+
+    /// Hands a node's own objects over.
+    #[inline(always)]
+    fn own<S: Simd>(&mut self, simd: S, node: u32, within: bool) {
+        let run = self.tree.nodes.run[node as usize];
+        if run.len == 0 {
+            return;
+        }
+        let mut left = run.len as usize;
+        let crossed = if within {
+            [1.0; Planes::ROOM]
+        } else {
+            self.planes.range(simd, &self.tree.nodes.bounds[node as usize])[1]
+        };
+        for block in self.tree.blocks.of(run) {
+            let held = if left < LANES { (1 << left) - 1 } else { u16::MAX };
+            left = left.saturating_sub(LANES);
+            let lanes = if within { held } else { held & !self.planes.outside(simd, block, &crossed) };
+            if lanes != 0 {
+                (self.found)(block, lanes);
+            }
+        }
+    }
+}
+
+/// A frustum's planes, one a lane, filled up with planes that everything is within.
+struct Planes {
+    upper: [[f32; Self::ROOM]; 3],
+    lower: [[f32; Self::ROOM]; 3],
+    outer: [f32; Self::ROOM],
+    inner: [f32; Self::ROOM],
+}
+
+impl Planes {
+    const COUNT: usize = 6;
+    /// As many as the widest register has lanes.
+    const ROOM: usize = 16;
+
+    fn new(frustum: &Frustum) -> Self {
+        let mut all = Self {
+            upper: [[0.0; Self::ROOM]; 3],
+            lower: [[0.0; Self::ROOM]; 3],
+            outer: [1.0; Self::ROOM],
+            inner: [1.0; Self::ROOM],
+        };
+        for (i, plane) in frustum.planes().iter().enumerate() {
+            for axis in 0..3 {
+                all.upper[axis][i] = plane.upper[axis];
+                all.lower[axis][i] = plane.lower[axis];
+            }
+            (all.outer[i], all.inner[i]) = (plane.outer, plane.inner);
+        }
+        all
+    }
+
+    /// The greatest and the least value of each plane's form over a valid box.
+    #[inline(always)]
+    fn range<S: Simd>(&self, simd: S, aabb: &Aabb) -> [[f32; Self::ROOM]; 2] {
+        let mut result = [[0.0; Self::ROOM]; 2];
+        let [greatest, least] = &mut result;
+        let (greatest, least) = (S::as_mut_simd_f32s(greatest).0, S::as_mut_simd_f32s(least).0);
+        for i in 0..Self::COUNT.div_ceil(S::F32_LANES) {
+            let (mut most, mut fewest) = ([simd.splat_f32s(0.0); 3], [simd.splat_f32s(0.0); 3]);
+            for axis in 0..3 {
+                let (low, high) = (simd.splat_f32s(aabb.min[axis]), simd.splat_f32s(aabb.max[axis]));
+                let upper = S::as_simd_f32s(&self.upper[axis]).0[i];
+                let lower = S::as_simd_f32s(&self.lower[axis]).0[i];
+                // Whatever the coefficients' signs: one of the four is the greatest.
+                let (a, b) = (simd.mul_f32s(upper, low), simd.mul_f32s(upper, high));
+                let (c, d) = (simd.mul_f32s(lower, low), simd.mul_f32s(lower, high));
+                most[axis] = simd.max_f32s(simd.max_f32s(a, b), simd.max_f32s(c, d));
+                fewest[axis] = simd.min_f32s(simd.min_f32s(a, b), simd.min_f32s(c, d));
+            }
+            let outer = S::as_simd_f32s(&self.outer).0[i];
+            let inner = S::as_simd_f32s(&self.inner).0[i];
+            greatest[i] = simd.add_f32s(sum(simd, most), outer);
+            least[i] = simd.add_f32s(sum(simd, fewest), inner);
+        }
+        result
+    }
+
+    /// The lanes of a block that are outside one of the planes that `crossed` is negative for.
+    #[inline(always)]
+    fn outside<S: Simd>(&self, simd: S, block: &Block, crossed: &[f32; Self::ROOM]) -> u16 {
+        let mut bits = 0;
+        for i in 0..LANES / S::F32_LANES {
+            let mut least = simd.splat_f32s(0.0);
+            for plane in 0..Self::COUNT {
+                if crossed[plane] >= 0.0 {
+                    continue;
+                }
+                let mut terms = [simd.splat_f32s(0.0); 3];
+                for axis in 0..3 {
+                    let (u, l) = (self.upper[axis][plane], self.lower[axis][plane]);
+                    let far_u = if u >= 0.0 { &block.max[axis] } else { &block.min[axis] };
+                    let far_l = if l >= 0.0 { &block.max[axis] } else { &block.min[axis] };
+                    terms[axis] = simd.max_f32s(
+                        simd.mul_f32s(simd.splat_f32s(u), S::as_simd_f32s(far_u).0[i]),
+                        simd.mul_f32s(simd.splat_f32s(l), S::as_simd_f32s(far_l).0[i]),
+                    );
+                }
+                let form = simd.add_f32s(sum(simd, terms), simd.splat_f32s(self.outer[plane]));
+                least = simd.min_f32s(least, form);
+            }
+            let outside = simd.less_than_f32s(least, simd.splat_f32s(0.0));
+            bits |= bits_of(simd, outside, i);
+        }
+        bits
+    }
+}
+
+/// In the order of [`Frustum::classify`]. Closures would not be compiled for the wide registers.
+#[inline(always)]
+fn sum<S: Simd>(simd: S, [x, y, z]: [S::f32s; 3]) -> S::f32s {
+    simd.add_f32s(simd.add_f32s(x, y), z)
+}
