@@ -98,6 +98,11 @@ pub trait Policy: Send + Sync {
         false
     }
 
+    /// Whether it asks about nodes: only then are fine leaves worth their upkeep.
+    fn asks(&self) -> bool {
+        true
+    }
+
     /// Starts a frame.
     fn begin(&mut self, cx: &Context<'_>);
 
@@ -142,6 +147,10 @@ impl Policy for Box<dyn Policy> {
 
     fn needs_blocking(&self) -> bool {
         (**self).needs_blocking()
+    }
+
+    fn asks(&self) -> bool {
+        (**self).asks()
     }
 
     fn begin(&mut self, cx: &Context<'_>) {
