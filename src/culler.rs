@@ -151,7 +151,7 @@ impl<P: Policy> Culler<P> {
         // Votes that nobody took before are out of date.
         self.votes.clear();
         self.policy.vote(&mut self.votes);
-        self.votes.questions = stats.queries;
+        self.votes.asks = self.policy.asks();
         stats.drawn = self.drawn.visible.len() as u32;
         stats.policy = start.elapsed().saturating_sub(stats.draw + stats.query + stats.wait);
         // Drawing that is not told apart from waiting would make questions look dear.

@@ -405,9 +405,9 @@ fn leaves_are_as_large_as_the_costs_ask_for() {
     assert!(mean < 1.5, "one view asks at nearly no cost: {mean} a leaf");
 }
 
-/// A tree that nobody has asked anything stays coarse; the first question makes it fine at once.
+/// A tree that nobody asks anything stays coarse; the first view that asks makes it fine at once.
 #[test]
-fn the_first_question_refines_the_tree() {
+fn the_first_view_that_asks_refines_the_tree() {
     let mut scene = row(2000, TreeConfig::default());
     for _ in 0..3 {
         scene.adapt([&mut Ballot(Votes::default())]);
@@ -415,10 +415,10 @@ fn the_first_question_refines_the_tree() {
     }
     let unasked = scene.tree().stats().nodes;
     assert!((2..200).contains(&unasked), "{unasked} nodes, none of which was asked about");
-    scene.adapt([&mut Ballot(Votes { questions: 1, ..Votes::default() })]);
+    scene.adapt([&mut Ballot(Votes { asks: true, ..Votes::default() })]);
     scene.tree().validate().expect("a valid tree");
     let leaves = scene.tree().nodes().filter(|n| n.is_leaf);
-    assert_eq!(leaves.map(|n| n.own).max(), Some(2), "a question of any kind counts");
+    assert_eq!(leaves.map(|n| n.own).max(), Some(2), "even a view that had nothing to ask counts");
 }
 
 /// What a view may see by the tree is what it may see by looking at each object.

@@ -77,13 +77,15 @@ pub fn run(count: usize, moving: f64, frames: usize, tree: TreeConfig) -> Row {
     scene.update();
     let mut copied = load.boxes.clone();
     let views = load.views().map(|(_, view)| view);
-    let mut queries = views.map(|view| Query::new(view));
+    let mut queries = views.map(Query::new);
     // A frame in which nothing moves takes less than the clock can tell.
     let repeat = if moving == 0.0 { 64 } else { 1 };
     let (mut write, mut copy, mut update) = (Vec::new(), Vec::new(), Vec::new());
     for frame in 0..WARM_UP + frames {
         if frame == WARM_UP {
-            (write.clear(), copy.clear(), update.clear());
+            write.clear();
+            copy.clear();
+            update.clear();
         }
         write.push(seconds(1, || {
             load.step();

@@ -34,7 +34,7 @@ impl Workload {
     /// Moves the movers one step: what the app itself does in a frame, and the least that
     /// anything can cost that keeps their boxes.
     pub fn step(&mut self) {
-        let turn = if self.frame % TURN == 0 && self.frame > 0 { -1.0 } else { 1.0 };
+        let turn = if self.frame.is_multiple_of(TURN) && self.frame > 0 { -1.0 } else { 1.0 };
         self.frame += 1;
         for (aabb, velocity) in self.boxes.iter_mut().zip(&mut self.velocities) {
             *velocity *= turn;

@@ -102,8 +102,8 @@ fn test(block: &[[f32; LANES]; 6], planes: &[Plane; 6]) -> u16 {
         }
     }
     let mut bits = 0;
-    for lane in 0..LANES {
-        bits |= if least[lane] >= 0.0 { 1u32 << lane } else { 0 };
+    for (lane, &least) in least.iter().enumerate() {
+        bits |= if least >= 0.0 { 1u32 << lane } else { 0 };
     }
     bits as u16
 }

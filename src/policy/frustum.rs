@@ -16,6 +16,10 @@ impl Policy for FrustumOnly {
         "frustum"
     }
 
+    fn asks(&self) -> bool {
+        false
+    }
+
     fn begin(&mut self, _cx: &Context<'_>) {
         self.done = false;
     }

@@ -100,6 +100,11 @@ pub trait Policy: Send + Sync {
         false
     }
 
+    /// Whether it asks about nodes: only then are fine leaves worth their upkeep.
+    fn asks(&self) -> bool {
+        true
+    }
+
     /// Starts a frame.
     fn begin(&mut self, cx: &Context<'_>);
 
@@ -150,6 +155,10 @@ impl Policy for Box<dyn Policy> {
 
     fn needs_blocking(&self) -> bool {
         (**self).needs_blocking()
+    }
+
+    fn asks(&self) -> bool {
+        (**self).asks()
     }
 
     fn begin(&mut self, cx: &Context<'_>) {

@@ -14,6 +14,10 @@ impl Policy for DrawAll {
         "none"
     }
 
+    fn asks(&self) -> bool {
+        false
+    }
+
     fn begin(&mut self, _cx: &Context<'_>) {
         self.done = false;
     }

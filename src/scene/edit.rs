@@ -11,7 +11,7 @@ use crate::geom::Aabb;
 
 impl Scene {
     /// Adds an object, without an entity. Its box may be bad: then it is drawn always.
-    /// O(depth). Call [`Scene::update`] before the next frame.
+    /// O(1). Call [`Scene::update`] before the next frame.
     pub fn insert(&mut self, bounds: Aabb, traits: Traits) -> ObjectId {
         self.insert_for(Entity::DANGLING, bounds, traits)
     }

@@ -141,7 +141,8 @@ impl Scene {
     }
 
     /// Lets the votes of all views split and merge leaves; once a frame, after all views. Returns
-    /// the time that it took. O(votes).
+    /// the time that it took. O(votes); the first view whose policy asks about nodes makes the
+    /// leaves fine, once, in O(n log n).
     pub fn adapt<'a, V: Voter + ?Sized + 'a>(
         &mut self,
         views: impl IntoIterator<Item = &'a mut V>,

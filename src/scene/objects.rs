@@ -140,6 +140,12 @@ impl Objects {
             && (state & BATCH == 0 || Some(self.batch[s]) == traits.batch)
     }
 
+    /// Whether a slot is an entity's, in the tree, and without any traits.
+    #[inline]
+    pub(crate) fn is_bare(&self, slot: u32, entity: Entity) -> bool {
+        self.state[slot as usize] == Place::Tree as State && self.entity[slot as usize] == entity
+    }
+
     /// Whether a handle is that of an object in the tree whose box needs no slack: the common case.
     #[inline]
     pub(crate) fn is_plain(&self, id: ObjectId) -> bool {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use hecs::{Entity, World};
+use hecs::{Entity, Or, With, Without, World};
 
 use super::Scene;
 use super::components::{Batch, Bounds, BoundsF64, Mobility, NeverCull, NotOccluder, Slack, Traits};
@@ -52,7 +52,7 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Mirror {
     /// Slot by `Entity::id`.
     slot_of: Vec<u32>,
-    /// The sync in which each slot's entity was last seen.
+    /// By slot: the last search for removed entities that found its own.
     seen: Vec<u32>,
     /// Slots that stand for an entity.
     count: usize,
@@ -77,8 +77,9 @@ impl Mirror {
         self.count += 1;
     }
 
-    /// Records that a slot's entity is there.
-    fn see(&mut self, slot: u32) {
+    /// Records that the entity of its slot is there.
+    fn see(&mut self, entity: Entity) {
+        let Some(slot) = self.slot_of(entity) else { return };
         let index = slot as usize;
         if index >= self.seen.len() {
             self.seen.resize(index + 1, 0);
@@ -95,6 +96,9 @@ type Optional<'a> = (
     Option<&'a Batch>,
 );
 
+/// Entities with any of them.
+type AnyOptional<'a> = Or<&'a Mobility, Or<&'a NeverCull, Or<&'a NotOccluder, Or<&'a Slack, &'a Batch>>>>;
+
 impl Scene {
     /// Brings the scene in step with a world: entities with [`Bounds`] (or [`BoundsF64`]) are its
     /// objects. Spawned, moved and despawned entities, components added and removed, and entity
@@ -103,24 +107,43 @@ impl Scene {
     pub fn sync(&mut self, world: &World) -> SyncReport {
         let start = Instant::now();
         let mut report = SyncReport::default();
-        self.mirror.tick = self.mirror.tick.wrapping_add(1);
         let mut found = 0;
-        for (entity, Bounds(bounds), optional) in world.query::<(Entity, &Bounds, Optional<'_>)>().iter() {
+        // Most entities have bounds alone, and most of those stay where they are.
+        for (entity, Bounds(bounds)) in world.query::<Without<(Entity, &Bounds), AnyOptional<'_>>>().iter() {
+            found += 1;
+            if !self.is_unchanged(entity, bounds) {
+                self.sync_one(entity, *bounds, Traits::default(), &mut report);
+            }
+        }
+        let mut others = world.query::<With<(Entity, &Bounds, Optional<'_>), AnyOptional<'_>>>();
+        for (entity, Bounds(bounds), optional) in others.iter() {
             found += 1;
             self.sync_one(entity, *bounds, traits(optional), &mut report);
         }
-        let mut absolute = world.query::<hecs::Without<(Entity, &BoundsF64, Optional<'_>), &Bounds>>();
+        let mut absolute = world.query::<Without<(Entity, &BoundsF64, Optional<'_>), &Bounds>>();
         for (entity, b, optional) in absolute.iter() {
             found += 1;
             let bounds = Aabb::from_f64(b.min, b.max, self.origin);
             self.sync_one(entity, bounds, traits(optional), &mut report);
         }
         if found < self.mirror.count {
+            self.mirror.tick = self.mirror.tick.wrapping_add(1);
+            for entity in world.query::<With<Entity, Or<&Bounds, &BoundsF64>>>().iter() {
+                self.mirror.see(entity);
+            }
             self.remove_unseen(&mut report);
         }
         report.sync_time = start.elapsed();
         report.tree_time = self.update();
         report
+    }
+
+    /// Whether an entity with nothing but its bounds is in the tree with this very box.
+    #[inline]
+    fn is_unchanged(&self, entity: Entity, bounds: &Aabb) -> bool {
+        self.mirror.slot_of(entity).is_some_and(|slot| {
+            self.objects.is_bare(slot, entity) && self.tree.aabb_of(slot) == Some(*bounds)
+        })
     }
 
     fn sync_one(&mut self, entity: Entity, bounds: Aabb, traits: Traits, report: &mut SyncReport) {
@@ -146,7 +169,6 @@ impl Scene {
                 slot
             }
         };
-        self.mirror.see(slot);
         if self.objects.place(slot) == Place::Bad {
             report.bad += 1;
             if report.first_bad.len() < SyncReport::NAMED {
@@ -179,7 +201,7 @@ impl Scene {
             if slot == NONE {
                 continue;
             }
-            let seen = self.mirror.seen[slot as usize] == self.mirror.tick;
+            let seen = self.mirror.seen.get(slot as usize) == Some(&self.mirror.tick);
             if !seen || self.objects.entity(slot).id() != index as u32 {
                 self.unbind(index as u32, slot, report);
             }

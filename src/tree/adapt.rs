@@ -41,8 +41,8 @@ pub struct Votes {
     pub forward: Vec3,
     /// What asking and drawing cost this view.
     pub costs: Costs,
-    /// Questions that it asked, of any kind.
-    pub questions: u32,
+    /// Whether its policy asks about nodes, even if it found none to ask about.
+    pub asks: bool,
     /// In the order of the answers.
     pub votes: Vec<Vote>,
 }
@@ -51,7 +51,7 @@ impl Votes {
     /// Forgets all votes and keeps the memory.
     pub fn clear(&mut self) {
         self.votes.clear();
-        self.questions = 0;
+        self.asks = false;
     }
 
     /// A vote from counts.
@@ -82,7 +82,7 @@ impl Tree {
         // Builds and merges read the blocks.
         self.refresh();
         self.find_leaf_size(ballots.clone());
-        if !self.asked && ballots.into_iter().any(|b| b.questions > 0 || !b.votes.is_empty()) {
+        if !self.asked && ballots.into_iter().any(|b| b.asks || !b.votes.is_empty()) {
             self.refine();
         }
         let (mut splits, mut merges) = (self.config.budget, self.config.budget);

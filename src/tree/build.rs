@@ -58,7 +58,7 @@ impl Tree {
         self.bulk_leaf().max(1).saturating_mul(4)
     }
 
-    /// The first question: from now on leaves are as fine as the configuration has them.
+    /// The first view that asks: from now on leaves are as fine as the configuration has them.
     /// O(n log n), once in a tree's life.
     pub(super) fn refine(&mut self) {
         self.asked = true;

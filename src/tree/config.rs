@@ -83,8 +83,8 @@ pub struct TreeConfig {
     /// that grows past four times as many is built anew.
     pub bulk_leaf: u32,
     /// The same, while no view has asked any question and the size of leaves follows the costs:
-    /// then leaves need only be good for frustum tests and cheap to keep. The first questions make
-    /// the leaves as fine as `bulk_leaf` and the costs have them.
+    /// then leaves need only be good for frustum tests and cheap to keep. The first view that
+    /// asks makes the leaves as fine as `bulk_leaf` and the costs have them.
     pub unasked_leaf: u32,
     /// Frames that a node waits after a split before it may merge, and after a merge before it may
     /// split. 0: the published rule, which oscillates.
@@ -190,7 +190,7 @@ impl TreeConfig {
             Dial::choice("tight_boxes", self.tight_boxes, TIGHT_BOXES, "when questions use tight boxes"),
             Dial::new("settle_frames", self.settle_frames, "frames without movement until a node is settled"),
             Dial::new("bulk_leaf", self.bulk_leaf, "objects a leaf that the bulk build aims at"),
-            Dial::new("unasked_leaf", self.unasked_leaf, "the same, until a view asks its first question"),
+            Dial::new("unasked_leaf", self.unasked_leaf, "the same, until the first view that asks"),
             Dial::new(
                 "cooldown",
                 self.cooldown,

@@ -2,9 +2,9 @@
 //!
 //! A node has no children or three: the two halves of its cell, and a third for the objects that
 //! the splitting plane cuts. Objects lie wholly in the cell of their node, in runs of blocks of
-//! sixteen boxes (`blocks`). Edits are placed at once (`place`); an update brings boxes and
-//! stamps up to date (`refit`), builds what has grown too full (`build`), and votes split and
-//! merge leaves (`adapt`).
+//! sixteen boxes (`blocks`). Edits are noted; an update takes them over (`refit`), moves and places
+//! objects (`place`), builds what has grown too full (`build`) and brings boxes and stamps up to
+//! date; votes split and merge leaves (`adapt`). Until a view asks about nodes, leaves stay coarse.
 
 mod adapt;
 mod block;

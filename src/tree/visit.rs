@@ -178,16 +178,16 @@ impl Planes {
         let mut bits = 0;
         for i in 0..LANES / S::F32_LANES {
             let mut least = simd.splat_f32s(0.0);
-            for plane in 0..Self::COUNT {
-                if crossed[plane] >= 0.0 {
+            for (plane, &form) in crossed.iter().enumerate().take(Self::COUNT) {
+                if form >= 0.0 {
                     continue;
                 }
                 let mut terms = [simd.splat_f32s(0.0); 3];
-                for axis in 0..3 {
+                for (axis, term) in terms.iter_mut().enumerate() {
                     let (u, l) = (self.upper[axis][plane], self.lower[axis][plane]);
                     let far_u = if u >= 0.0 { &block.max[axis] } else { &block.min[axis] };
                     let far_l = if l >= 0.0 { &block.max[axis] } else { &block.min[axis] };
-                    terms[axis] = simd.max_f32s(
+                    *term = simd.max_f32s(
                         simd.mul_f32s(simd.splat_f32s(u), S::as_simd_f32s(far_u).0[i]),
                         simd.mul_f32s(simd.splat_f32s(l), S::as_simd_f32s(far_l).0[i]),
                     );
