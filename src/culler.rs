@@ -36,16 +36,17 @@ pub struct Culler<P> {
 }
 
 impl<P: Policy> Culler<P> {
-    /// A view that has seen nothing yet.
+    /// A view that has seen nothing yet. With [`Scene::adapt`] before the first frame, the tree knows
+    /// from the start whether anybody asks about its nodes.
     pub fn new(policy: P) -> Self {
         Self {
+            votes: Votes { asks: policy.asks(), ..Votes::default() },
             policy,
             tradeoff: Tradeoff::EXACT,
             costs: Costs::default(),
             frame: 0,
             scene: (0, 0),
             drawn: DrawnList::default(),
-            votes: Votes::default(),
             open: OpenQuestions::default(),
             stack: Vec::new(),
         }

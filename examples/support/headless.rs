@@ -16,6 +16,8 @@ pub fn run(flags: &Flags, mut scenario: Scenario) -> anyhow::Result<()> {
     let mut scene = Scene::new(SceneConfig { tree: flags.tree()?, ..Default::default() });
     let mut eye = Culler::new(flags.policy()?);
     let mut stage = Stage::new(flags)?;
+    // Before the first frame: the tree is built at once as finely as somebody who asks wants it.
+    scene.adapt([&mut eye]);
 
     let mut run = Run::new(flags, &stage, &scenario.name, &scenario.world)?;
     while let Some(frame) = run.advance() {

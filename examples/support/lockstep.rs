@@ -50,9 +50,12 @@ impl Lane {
             "the policy {} only draws what another one found; choose one that culls",
             policy.name()
         );
+        let (mut scene, mut eye) =
+            (Scene::new(SceneConfig { tree, ..Default::default() }), Culler::new(policy));
+        scene.adapt([&mut eye]);
         Ok(Self {
-            scene: Scene::new(SceneConfig { tree, ..Default::default() }),
-            eye: Culler::new(policy),
+            scene,
+            eye,
             stage: SoftwareStage::new(flags.detail()?),
             records: Vec::new(),
             built: TreeStats::default(),
