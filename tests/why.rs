@@ -83,8 +83,11 @@ struct Watch<P> {
 impl<P: Policy> Watch<P> {
     fn new(tree: TreeConfig, policy: P) -> Self {
         let view = View::look_at(Vec3::Z * 10.0, Vec3::ZERO, 60.0, 0.1, SCREEN).expect("a view");
-        let scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
-        Self { scene, eye: Culler::new(policy), queries: Listening::default(), view }
+        let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
+        let mut eye = Culler::new(policy);
+        // Leaves are fine from the start.
+        scene.adapt([&mut eye]);
+        Self { scene, eye, queries: Listening::default(), view }
     }
 
     /// Draws a frame of a stage's world.
