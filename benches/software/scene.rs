@@ -23,12 +23,12 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// `count` boxes of 5 to 15 pixels a side, a draw call each.
+    /// `count` boxes of 4 to 12 pixels a side, a draw call each.
     pub fn boxes(count: usize) -> Self {
         let mut dice = ChaCha8Rng::seed_from_u64(1);
         let cube = unit_cube();
         let calls = (0..count).map(|_| {
-            let side = dice.random_range(5.0..15.0);
+            let side = dice.random_range(4.0..12.0);
             let (at, size) = place(&mut dice, 10.0..100.0, side);
             (cube.clone(), Affine3A::from_scale_rotation_translation(Vec3::splat(size), turn(&mut dice), at))
         });
@@ -36,13 +36,13 @@ impl Scene {
         Self { name: "boxes", calls, boxes: query_boxes(&mut dice) }
     }
 
-    /// `count` bunnies of about 300 pixels a side, a draw call each.
+    /// `count` bunnies of about 200 pixels a side, a draw call each.
     pub fn bunnies(count: usize) -> Self {
         let mut dice = ChaCha8Rng::seed_from_u64(2);
         let mesh = bunny_mesh().expect("the bunny");
         let bounds = mesh.bounds();
         let calls = (0..count).map(|_| {
-            let (at, size) = place(&mut dice, 10.0..100.0, 300.0);
+            let (at, size) = place(&mut dice, 10.0..100.0, 200.0);
             let scale = size / bounds.size().max_element();
             let centred = Affine3A::from_translation(-bounds.center());
             let placed = Affine3A::from_scale_rotation_translation(Vec3::splat(scale), turn(&mut dice), at);
