@@ -1,5 +1,4 @@
-//! Two scenes from seeds: boxes of a few dozen pixels a triangle, and bunnies of triangles below a
-//! pixel.
+//! Two scenes from seeds: small boxes, and bunnies of triangles below a pixel.
 
 use glam::{Affine3A, EulerRot, Quat, Vec2, Vec3};
 use rand::{RngExt, SeedableRng};
@@ -23,12 +22,12 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// `count` boxes of 4 to 12 pixels a side, a draw call each.
+    /// `count` boxes that cover about 5 to 50 pixels, a draw call each.
     pub fn boxes(count: usize) -> Self {
         let mut dice = ChaCha8Rng::seed_from_u64(1);
         let cube = unit_cube();
         let calls = (0..count).map(|_| {
-            let side = dice.random_range(4.0..12.0);
+            let side = f32::sqrt(dice.random_range(5.0..50.0));
             let (at, size) = place(&mut dice, 10.0..100.0, side);
             (cube.clone(), Affine3A::from_scale_rotation_translation(Vec3::splat(size), turn(&mut dice), at))
         });

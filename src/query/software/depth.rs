@@ -1,6 +1,6 @@
 //! The depth buffer and its sink.
 
-use super::raster::{Id, LANES, Rows, Sink};
+use super::raster::{HALF, Id, LANES, Rows, Sink};
 use super::simd::Isa;
 
 /// Nearness of every pixel, row by row. A row has room for a block that starts at any column.
@@ -110,6 +110,34 @@ impl Sink for DepthSink<'_> {
             covered[i] = masked(nearness[i], outside[i]);
         }
         I::keep_greatest(kept, &covered);
+    }
+
+    #[inline(always)]
+    fn pair<I: Isa>(
+        &mut self,
+        row: i32,
+        column: i32,
+        outside: &[i32; LANES],
+        nearness: &[f32; LANES],
+        _: Id,
+    ) {
+        let start = (row - self.rows.first) as usize * self.stride + column as usize;
+        let mut covered = [0.0_f32; LANES];
+        for i in 0..LANES {
+            covered[i] = masked(nearness[i], outside[i]);
+        }
+        // A row has room for a block at any column, so what is left of the band reaches beyond
+        // `stride` unless the upper row is its last.
+        let Some((upper, rest)) = self.nearness[start..].split_first_chunk_mut::<HALF>() else { return };
+        let mut none = [0.0_f32; HALF];
+        let lower = rest.get_mut(self.stride - HALF..).and_then(|rest| rest.first_chunk_mut::<HALF>());
+        let lower = lower.unwrap_or(&mut none);
+        let mut kept = [0.0_f32; LANES];
+        kept[..HALF].copy_from_slice(upper);
+        kept[HALF..].copy_from_slice(lower);
+        I::keep_greatest(&mut kept, &covered);
+        upper.copy_from_slice(&kept[..HALF]);
+        lower.copy_from_slice(&kept[HALF..]);
     }
 
     #[inline(always)]

@@ -15,6 +15,8 @@ use super::vertex::{SUBPIXELS, Vertex};
 
 /// Samples that are worked on together.
 pub(crate) const LANES: usize = 16;
+/// Samples of a row when two rows are worked on together.
+pub(crate) const HALF: usize = LANES / 2;
 /// The most sample columns or rows of a triangle that is rasterised among others, a lane each.
 pub(crate) const TINY_SIDE: i32 = 4;
 
@@ -32,6 +34,17 @@ pub(crate) trait Sink {
     /// Samples of a row, from `column` on; lanes with `outside < 0` are not covered. The row and
     /// the covered columns lie in the viewport.
     fn block<I: Isa>(
+        &mut self,
+        row: i32,
+        column: i32,
+        outside: &[i32; LANES],
+        nearness: &[f32; LANES],
+        id: Id,
+    );
+
+    /// The same for [`HALF`] samples of a row, and as many below them. The lower row may lie beyond
+    /// the band where none of its lanes is covered.
+    fn pair<I: Isa>(
         &mut self,
         row: i32,
         column: i32,
@@ -218,7 +231,11 @@ pub(crate) fn single<I: Isa, S: Sink>(t: &Triangle, sink: &mut S) {
         return;
     }
     if right - left <= SMALL_EXTENT && bottom - top <= SMALL_EXTENT {
-        small::<I, S>(t, &area, sink);
+        if area.last_column - area.first_column < HALF as i32 {
+            narrow::<I, S>(t, &area, sink);
+        } else {
+            small::<I, S>(t, &area, sink);
+        }
     } else {
         large::<I, S>(t, &area, sink);
     }
@@ -232,6 +249,47 @@ struct Area {
     last_row: i32,
 }
 
+/// A triangle of few columns, two rows at a time.
+#[inline(always)]
+fn narrow<I: Isa, S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
+    let setup = Small::new(t.x, t.y, t.nearness, area.first_column, area.first_row);
+    let shading = Shading::new(setup.nearness, setup.area as f32);
+    let columns = area.last_column - area.first_column;
+    let mut edge = [[0_i32; LANES]; 3];
+    let mut beside = [0_i32; LANES];
+    for i in 0..LANES {
+        let (dx, dy) = ((i % HALF) as i32, (i / HALF) as i32);
+        for k in 0..3 {
+            edge[k][i] = setup.edge[k]
+                .wrapping_add(setup.step_x[k].wrapping_mul(dx))
+                .wrapping_add(setup.step_y[k].wrapping_mul(dy));
+        }
+        beside[i] = columns - dx;
+    }
+    let mut row = area.first_row;
+    while row <= area.last_row {
+        let mut outside = [0_i32; LANES];
+        let mut nearness = [0.0_f32; LANES];
+        let below = area.last_row - row;
+        for i in 0..LANES {
+            outside[i] = edge[0][i].wrapping_add(setup.bias[0])
+                | edge[1][i].wrapping_add(setup.bias[1])
+                | edge[2][i].wrapping_add(setup.bias[2])
+                | beside[i]
+                | (below - (i / HALF) as i32);
+            nearness[i] = shading.nearness(edge[1][i] as f32, edge[2][i] as f32);
+        }
+        sink.pair::<I>(row, area.first_column, &outside, &nearness, t.id);
+        for k in 0..3 {
+            for i in 0..LANES {
+                edge[k][i] = edge[k][i].wrapping_add(setup.step_y[k].wrapping_mul(2));
+            }
+        }
+        row += 2;
+    }
+}
+
+/// A triangle that the i32 path takes, row by row.
 #[inline(always)]
 fn small<I: Isa, S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
     let setup = Small::new(t.x, t.y, t.nearness, area.first_column, area.first_row);
