@@ -4,8 +4,9 @@ use glam::Mat4;
 
 use super::clip::clip;
 use super::pass::DrawCall;
-use super::raster::{ALL_LANES, Id, LANES, TINY_SIDE, TinyBatch, Triangle, negative};
+use super::raster::{ALL_LANES, Id, LANES, TINY_SIDE, TinyBatch, Triangle};
 use super::setup::{SMALL_EXTENT, first_sample, last_sample};
+use super::simd::Isa;
 use super::vertex::{CODE_W_MINUS_Z, CODE_Z, Screen, Vertex, clip_position};
 
 /// A draw call in a wave: where its vertices and triangles lie in the wave's buffers.
@@ -36,25 +37,27 @@ pub(crate) struct Wave<'a> {
 /// The triangles of a chunk that meet one band.
 #[derive(Debug, Default)]
 pub(crate) struct Bin {
-    /// Full but for the last.
+    /// Batches with triangles in some lanes.
+    whole: Vec<(TinyBatch, u32)>,
+    /// Triangles picked from batches, packed: full but for the last.
     tiny: Vec<TinyBatch>,
     tiny_count: usize,
     pub(crate) singles: Vec<Triangle>,
 }
 
 impl Bin {
-    /// The batches of tiny triangles, each with how many it holds.
-    pub(crate) fn tiny(&self) -> impl Iterator<Item = (&TinyBatch, usize)> {
+    /// The batches of tiny triangles, each with a bit for each lane that holds one.
+    pub(crate) fn tiny(&self) -> impl Iterator<Item = (&TinyBatch, u32)> {
         let count = self.tiny_count;
-        self.tiny[..count.div_ceil(LANES)]
-            .iter()
-            .enumerate()
-            .map(move |(i, batch)| (batch, (count - i * LANES).min(LANES)))
+        let packed = self.tiny[..count.div_ceil(LANES)].iter().enumerate();
+        let packed = packed.map(move |(i, batch)| (batch, (1 << (count - i * LANES).min(LANES)) - 1));
+        self.whole.iter().map(|(batch, lanes)| (batch, *lanes)).chain(packed)
     }
 
     fn clear(&mut self) {
         // The batches stay: what lies beyond the count is stale and never read.
         self.tiny_count = 0;
+        self.whole.clear();
         self.singles.clear();
     }
 
@@ -86,6 +89,10 @@ pub(crate) struct Chunk {
     pub(crate) kept: u64,
 }
 
+/// Tiny triangles of a batch from which it is kept as it is, gaps and all: a gap costs less than
+/// to move a triangle.
+const WHOLE_FROM: u32 = 6;
+
 /// Triangles a chunk.
 pub(crate) const CHUNK: usize = 2048;
 
@@ -107,7 +114,7 @@ impl Chunk {
 
 /// Bins the triangles of chunk `index` of a wave.
 #[inline(always)]
-pub(crate) fn bin<const WITH_IDS: bool>(wave: &Wave<'_>, index: usize, chunk: &mut Chunk) {
+pub(crate) fn bin<I: Isa, const WITH_IDS: bool>(wave: &Wave<'_>, index: usize, chunk: &mut Chunk) {
     let mut next = index * CHUNK;
     let end = (next + CHUNK).min(wave.triangles);
     let mut batch = TinyBatch::EMPTY;
@@ -147,7 +154,7 @@ pub(crate) fn bin<const WITH_IDS: bool>(wave: &Wave<'_>, index: usize, chunk: &m
             }
             filled += 1;
             if filled == LANES {
-                keep::<WITH_IDS>(wave, &batch, LANES, chunk);
+                keep::<I, WITH_IDS>(wave, &batch, LANES, chunk);
                 filled = 0;
             }
             triangle += 1;
@@ -155,13 +162,13 @@ pub(crate) fn bin<const WITH_IDS: bool>(wave: &Wave<'_>, index: usize, chunk: &m
         next += count;
         at += 1;
     }
-    keep::<WITH_IDS>(wave, &batch, filled, chunk);
+    keep::<I, WITH_IDS>(wave, &batch, filled, chunk);
 }
 
 /// Bins those of the first `count` triangles of a batch that may cover a sample. The other lanes
 /// may hold anything, hence the wrapping arithmetic.
 #[inline(always)]
-fn keep<const WITH_IDS: bool>(wave: &Wave<'_>, batch: &TinyBatch, count: usize, chunk: &mut Chunk) {
+fn keep<I: Isa, const WITH_IDS: bool>(wave: &Wave<'_>, batch: &TinyBatch, count: usize, chunk: &mut Chunk) {
     let mut empty = [0_i32; LANES];
     let mut not_tiny = [0_i32; LANES];
     let (mut first_row, mut last_row) = ([0_i32; LANES], [0_i32; LANES]);
@@ -181,9 +188,16 @@ fn keep<const WITH_IDS: bool>(wave: &Wave<'_>, batch: &TinyBatch, count: usize, 
             | SMALL_EXTENT.wrapping_sub(right.wrapping_sub(left))
             | SMALL_EXTENT.wrapping_sub(bottom.wrapping_sub(top));
     }
-    let mut kept = (negative(&empty) ^ ALL_LANES) & ((1 << count) - 1);
-    let singles = negative(&not_tiny);
+    let mut kept = (I::negative(&empty) ^ ALL_LANES) & ((1 << count) - 1);
+    let singles = I::negative(&not_tiny);
     chunk.kept += u64::from(kept.count_ones());
+    let tiny = kept & !singles;
+    if tiny.count_ones() >= WHOLE_FROM
+        && let Some(band) = common_band(wave, tiny, &first_row, &last_row)
+    {
+        chunk.bins[band].whole.push((*batch, tiny));
+        kept &= singles;
+    }
     while kept != 0 {
         let i = kept.trailing_zeros() as usize;
         kept &= kept - 1;
@@ -201,6 +215,24 @@ fn keep<const WITH_IDS: bool>(wave: &Wave<'_>, batch: &TinyBatch, count: usize, 
             }
         }
     }
+}
+
+/// The band that all triangles in some lanes lie in, if it is one.
+#[inline(always)]
+fn common_band(
+    wave: &Wave<'_>,
+    lanes: u32,
+    first_row: &[i32; LANES],
+    last_row: &[i32; LANES],
+) -> Option<usize> {
+    let (mut top, mut bottom) = (i32::MAX, i32::MIN);
+    for i in 0..LANES {
+        let present = lanes >> i & 1 != 0;
+        top = if present { first_row[i].min(top) } else { top };
+        bottom = if present { last_row[i].max(bottom) } else { bottom };
+    }
+    let (first, last) = bands(wave, top, bottom);
+    (first == last).then_some(first)
 }
 
 #[inline(always)]

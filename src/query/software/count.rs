@@ -160,16 +160,27 @@ pub(crate) fn any(scene: Scene<'_>, proxy: &Proxy) -> bool {
             if !is_leaf {
                 return Step::Into;
             }
-            found = samples(scene.depth, shape, part).0 > 0;
+            found = samples(scene.depth, shape, part, tile_column(part)).0 > 0;
             if found { Step::Stop } else { Step::Over }
         },
     );
     found
 }
 
+/// A proxy of at most so many rows, and [`LANES`] columns, is counted without a look at the
+/// hierarchy.
+const FEW_ROWS: u32 = 16;
+
 /// How many samples of a proxy are in sight, and how many it covers.
 #[inline(always)]
 pub(crate) fn dual(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
+    let rect = on_screen(scene, proxy);
+    if rect.x0 >= rect.x1 || rect.y0 >= rect.y1 {
+        return (0, 0);
+    }
+    if rect.width() <= LANES as u32 && rect.height() <= FEW_ROWS {
+        return samples(scene.depth, &Shape::new(proxy), &rect, rect.x0);
+    }
     let (mut visible, mut total) = (0, 0);
     walk(
         scene,
@@ -189,13 +200,20 @@ pub(crate) fn dual(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
             if !is_leaf {
                 return Step::Into;
             }
-            let (v, t) = samples(scene.depth, shape, part);
+            let (v, t) = samples(scene.depth, shape, part, tile_column(part));
             visible += v;
             total += t;
             Step::Over
         },
     );
     (visible, total)
+}
+
+/// The pixels of a proxy that the depth buffer has; perhaps none.
+#[inline(always)]
+fn on_screen(scene: Scene<'_>, proxy: &Proxy) -> PixelRect {
+    let image = scene.depth.image();
+    PixelRect { x1: proxy.rect.x1.min(image.width()), y1: proxy.rect.y1.min(image.height()), ..proxy.rect }
 }
 
 /// Where to go from a tile.
@@ -213,12 +231,7 @@ fn walk(
     proxy: &Proxy,
     mut visit: impl FnMut(&PixelRect, &Shape, &Verdict, (f32, f32), bool) -> Step,
 ) {
-    let image = scene.depth.image();
-    let rect = PixelRect {
-        x1: proxy.rect.x1.min(image.width()),
-        y1: proxy.rect.y1.min(image.height()),
-        ..proxy.rect
-    };
+    let rect = on_screen(scene, proxy);
     if rect.x0 >= rect.x1 || rect.y0 >= rect.y1 {
         return;
     }
@@ -263,11 +276,17 @@ fn walk(
     }
 }
 
-/// The plain loop over the samples of part of one tile: visible and covered ones.
+/// The first column of the tile that a part of one lies in.
 #[inline(always)]
-fn samples(depth: &Depth, shape: &Shape, part: &PixelRect) -> (u32, u32) {
-    // Lanes are the tile's columns; those outside the part have no bit in `in_part`.
-    let first_column = part.x0 / TILE_WIDTH * TILE_WIDTH;
+fn tile_column(part: &PixelRect) -> u32 {
+    part.x0 / TILE_WIDTH * TILE_WIDTH
+}
+
+/// The plain loop over the samples of a rectangle that lies in the [`LANES`] columns from
+/// `first_column` on: visible and covered ones.
+#[inline(always)]
+fn samples(depth: &Depth, shape: &Shape, part: &PixelRect, first_column: u32) -> (u32, u32) {
+    // Lanes are columns; those outside the part have no bit in `in_part`.
     let mut in_part = [0_i32; LANES];
     let mut edges_x = [[0.0_f32; LANES]; EDGES];
     let mut planes_x = [[0.0_f32; LANES]; PLANES];

@@ -1,6 +1,7 @@
 //! The depth buffer and its sink.
 
-use super::raster::{Id, LANES, Rows, Sink};
+use super::raster::{HALF, Id, LANES, Rows, Sink};
+use super::simd::Isa;
 
 /// Nearness of every pixel, row by row. A row has room for a block that starts at any column.
 #[derive(Debug, Default)]
@@ -94,21 +95,56 @@ impl Sink for DepthSink<'_> {
     }
 
     #[inline(always)]
-    fn block(&mut self, row: i32, column: i32, outside: &[i32; LANES], nearness: &[f32; LANES], _: Id) {
+    fn block<I: Isa>(
+        &mut self,
+        row: i32,
+        column: i32,
+        outside: &[i32; LANES],
+        nearness: &[f32; LANES],
+        _: Id,
+    ) {
         let start = (row - self.rows.first) as usize * self.stride + column as usize;
         let Some(kept) = self.nearness[start..].first_chunk_mut::<LANES>() else { return };
+        let mut covered = [0.0_f32; LANES];
         for i in 0..LANES {
-            let n = masked(nearness[i], outside[i]);
-            kept[i] = if n > kept[i] { n } else { kept[i] };
+            covered[i] = masked(nearness[i], outside[i]);
         }
+        I::keep_greatest(kept, &covered);
+    }
+
+    #[inline(always)]
+    fn pair<I: Isa>(
+        &mut self,
+        row: i32,
+        column: i32,
+        outside: &[i32; LANES],
+        nearness: &[f32; LANES],
+        _: Id,
+    ) {
+        let start = (row - self.rows.first) as usize * self.stride + column as usize;
+        let mut covered = [0.0_f32; LANES];
+        for i in 0..LANES {
+            covered[i] = masked(nearness[i], outside[i]);
+        }
+        // A row has room for a block at any column, so what is left of the band reaches beyond
+        // `stride` unless the upper row is its last.
+        let Some((upper, rest)) = self.nearness[start..].split_first_chunk_mut::<HALF>() else { return };
+        let mut none = [0.0_f32; HALF];
+        let lower = rest.get_mut(self.stride - HALF..).and_then(|rest| rest.first_chunk_mut::<HALF>());
+        let lower = lower.unwrap_or(&mut none);
+        let mut kept = [0.0_f32; LANES];
+        kept[..HALF].copy_from_slice(upper);
+        kept[HALF..].copy_from_slice(lower);
+        I::keep_greatest(&mut kept, &covered);
+        upper.copy_from_slice(&kept[..HALF]);
+        lower.copy_from_slice(&kept[HALF..]);
     }
 
     #[inline(always)]
     fn sample(&mut self, row: i32, column: i32, nearness: f32, _: Id) {
         let kept = &mut self.nearness[(row - self.rows.first) as usize * self.stride + column as usize];
-        if nearness > *kept {
-            *kept = nearness;
-        }
+        // Stored in any case: which one is nearer cannot be foretold.
+        *kept = if nearness > *kept { nearness } else { *kept };
     }
 }
 

@@ -10,25 +10,18 @@
 
 use super::bin::Chunk;
 use super::setup::{SMALL_EXTENT, Shading, Small, bias, centre, first_sample, last_sample};
+use super::simd::Isa;
 use super::vertex::{SUBPIXELS, Vertex};
 
 /// Samples that are worked on together.
 pub(crate) const LANES: usize = 16;
+/// Samples of a row when two rows are worked on together.
+pub(crate) const HALF: usize = LANES / 2;
 /// The most sample columns or rows of a triangle that is rasterised among others, a lane each.
 pub(crate) const TINY_SIDE: i32 = 4;
 
 /// A bit for each lane.
 pub(crate) const ALL_LANES: u32 = (1 << LANES) - 1;
-
-/// A bit for each lane with a negative value.
-#[inline(always)]
-pub(crate) fn negative(values: &[i32; LANES]) -> u32 {
-    let mut bits = 0;
-    for (i, &value) in values.iter().enumerate() {
-        bits |= (value >> 31) & (1 << i);
-    }
-    bits as u32
-}
 
 /// Where samples go. The rows of a sink are those of one band.
 pub(crate) trait Sink {
@@ -40,7 +33,25 @@ pub(crate) trait Sink {
 
     /// Samples of a row, from `column` on; lanes with `outside < 0` are not covered. The row and
     /// the covered columns lie in the viewport.
-    fn block(&mut self, row: i32, column: i32, outside: &[i32; LANES], nearness: &[f32; LANES], id: Id);
+    fn block<I: Isa>(
+        &mut self,
+        row: i32,
+        column: i32,
+        outside: &[i32; LANES],
+        nearness: &[f32; LANES],
+        id: Id,
+    );
+
+    /// The same for [`HALF`] samples of a row, and as many below them. The lower row may lie beyond
+    /// the band where none of its lanes is covered.
+    fn pair<I: Isa>(
+        &mut self,
+        row: i32,
+        column: i32,
+        outside: &[i32; LANES],
+        nearness: &[f32; LANES],
+        id: Id,
+    );
 
     /// One sample.
     fn sample(&mut self, row: i32, column: i32, nearness: f32, id: Id);
@@ -104,22 +115,23 @@ impl TinyBatch {
 
 /// Rasterises what chunks of triangles left for one band.
 #[inline(always)]
-pub(crate) fn band<S: Sink>(chunks: &[Chunk], band: usize, sink: &mut S) {
+pub(crate) fn band<I: Isa, S: Sink>(chunks: &[Chunk], band: usize, sink: &mut S) {
     for chunk in chunks {
         let bin = chunk.bin(band);
-        for (batch, count) in bin.tiny() {
-            tiny(batch, count, sink);
+        for (batch, lanes) in bin.tiny() {
+            tiny::<I, S>(batch, lanes, sink);
         }
         for triangle in &bin.singles {
-            single(triangle, sink);
+            single::<I, S>(triangle, sink);
         }
     }
 }
 
-/// Rasterises the first `count` triangles of a batch, each of at most [`TINY_SIDE`] sample columns
-/// and rows and [`SMALL_EXTENT`] a side: one step looks at one sample of every triangle.
+/// Rasterises the triangles in some lanes of a batch, each of at most [`TINY_SIDE`] sample columns
+/// and rows and [`SMALL_EXTENT`] a side: one step looks at one sample of every triangle. The other
+/// lanes may hold anything.
 #[inline(always)]
-pub(crate) fn tiny<S: Sink>(batch: &TinyBatch, count: usize, sink: &mut S) {
+pub(crate) fn tiny<I: Isa, S: Sink>(batch: &TinyBatch, lanes: u32, sink: &mut S) {
     let rows = sink.rows();
     let mut edge = [[0_i32; LANES]; 3];
     let mut step_x = [[0_i32; LANES]; 3];
@@ -139,8 +151,11 @@ pub(crate) fn tiny<S: Sink>(batch: &TinyBatch, count: usize, sink: &mut S) {
         let n = [batch.nearness[0][i], batch.nearness[1][i], batch.nearness[2][i]];
         column[i] = first_sample(x[0].min(x[1]).min(x[2])).max(0);
         row[i] = first_sample(y[0].min(y[1]).min(y[2])).max(rows.first);
-        columns[i] = last_sample(x[0].max(x[1]).max(x[2])).min(rows.last_column) - column[i];
-        lines[i] = last_sample(y[0].max(y[1]).max(y[2])).min(rows.last) - row[i];
+        // All ones in a lane without a triangle, for -1 columns and rows.
+        let absent = ((lanes >> i & 1) as i32).wrapping_sub(1);
+        columns[i] =
+            last_sample(x[0].max(x[1]).max(x[2])).min(rows.last_column).wrapping_sub(column[i]) | absent;
+        lines[i] = last_sample(y[0].max(y[1]).max(y[2])).min(rows.last).wrapping_sub(row[i]) | absent;
         let t = Small::new(x, y, n, column[i], row[i]);
         for k in 0..3 {
             edge[k][i] = t.edge[k];
@@ -156,22 +171,30 @@ pub(crate) fn tiny<S: Sink>(batch: &TinyBatch, count: usize, sink: &mut S) {
         low[i] = s.least;
         high[i] = s.greatest;
     }
-    lines[count..].fill(-1);
     let most_columns = columns.iter().fold(-1, |most, &c| c.max(most));
     let most_lines = lines.iter().fold(-1, |most, &c| c.max(most));
     for dy in 0..=most_lines {
         for dx in 0..=most_columns {
+            let mut e = [[0_i32; LANES]; 3];
             let mut outside = [0_i32; LANES];
-            let mut nearness = [0.0_f32; LANES];
             for i in 0..LANES {
-                let at =
-                    |k: usize| edge[k][i].wrapping_add(dx * step_x[k][i]).wrapping_add(dy * step_y[k][i]);
-                let e = [at(0), at(1), at(2)];
-                outside[i] = e[0].wrapping_add(biases[0][i])
-                    | e[1].wrapping_add(biases[1][i])
-                    | e[2].wrapping_add(biases[2][i])
+                for k in 0..3 {
+                    e[k][i] = edge[k][i]
+                        .wrapping_add(dx.wrapping_mul(step_x[k][i]))
+                        .wrapping_add(dy.wrapping_mul(step_y[k][i]));
+                }
+                outside[i] = e[0][i].wrapping_add(biases[0][i])
+                    | e[1][i].wrapping_add(biases[1][i])
+                    | e[2][i].wrapping_add(biases[2][i])
                     | (columns[i] - dx)
                     | (lines[i] - dy);
+            }
+            let mut covered = I::negative(&outside) ^ ALL_LANES;
+            if covered == 0 {
+                continue;
+            }
+            let mut nearness = [0.0_f32; LANES];
+            for i in 0..LANES {
                 let shading = Shading {
                     inverse_area: inverse_area[i],
                     base: base[i],
@@ -180,9 +203,8 @@ pub(crate) fn tiny<S: Sink>(batch: &TinyBatch, count: usize, sink: &mut S) {
                     least: low[i],
                     greatest: high[i],
                 };
-                nearness[i] = shading.nearness(e[1] as f32, e[2] as f32);
+                nearness[i] = shading.nearness(e[1][i] as f32, e[2][i] as f32);
             }
-            let mut covered = negative(&outside) ^ ALL_LANES;
             while covered != 0 {
                 let i = covered.trailing_zeros() as usize;
                 covered &= covered - 1;
@@ -195,7 +217,7 @@ pub(crate) fn tiny<S: Sink>(batch: &TinyBatch, count: usize, sink: &mut S) {
 
 /// Rasterises one triangle of any size, row by row.
 #[inline(always)]
-pub(crate) fn single<S: Sink>(t: &Triangle, sink: &mut S) {
+pub(crate) fn single<I: Isa, S: Sink>(t: &Triangle, sink: &mut S) {
     let rows = sink.rows();
     let (left, right) = (t.x[0].min(t.x[1]).min(t.x[2]), t.x[0].max(t.x[1]).max(t.x[2]));
     let (top, bottom) = (t.y[0].min(t.y[1]).min(t.y[2]), t.y[0].max(t.y[1]).max(t.y[2]));
@@ -209,9 +231,13 @@ pub(crate) fn single<S: Sink>(t: &Triangle, sink: &mut S) {
         return;
     }
     if right - left <= SMALL_EXTENT && bottom - top <= SMALL_EXTENT {
-        small(t, &area, sink);
+        if area.last_column - area.first_column < HALF as i32 {
+            narrow::<I, S>(t, &area, sink);
+        } else {
+            small::<I, S>(t, &area, sink);
+        }
     } else {
-        large(t, &area, sink);
+        large::<I, S>(t, &area, sink);
     }
 }
 
@@ -223,8 +249,49 @@ struct Area {
     last_row: i32,
 }
 
+/// A triangle of few columns, two rows at a time.
 #[inline(always)]
-fn small<S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
+fn narrow<I: Isa, S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
+    let setup = Small::new(t.x, t.y, t.nearness, area.first_column, area.first_row);
+    let shading = Shading::new(setup.nearness, setup.area as f32);
+    let columns = area.last_column - area.first_column;
+    let mut edge = [[0_i32; LANES]; 3];
+    let mut beside = [0_i32; LANES];
+    for i in 0..LANES {
+        let (dx, dy) = ((i % HALF) as i32, (i / HALF) as i32);
+        for k in 0..3 {
+            edge[k][i] = setup.edge[k]
+                .wrapping_add(setup.step_x[k].wrapping_mul(dx))
+                .wrapping_add(setup.step_y[k].wrapping_mul(dy));
+        }
+        beside[i] = columns - dx;
+    }
+    let mut row = area.first_row;
+    while row <= area.last_row {
+        let mut outside = [0_i32; LANES];
+        let mut nearness = [0.0_f32; LANES];
+        let below = area.last_row - row;
+        for i in 0..LANES {
+            outside[i] = edge[0][i].wrapping_add(setup.bias[0])
+                | edge[1][i].wrapping_add(setup.bias[1])
+                | edge[2][i].wrapping_add(setup.bias[2])
+                | beside[i]
+                | (below - (i / HALF) as i32);
+            nearness[i] = shading.nearness(edge[1][i] as f32, edge[2][i] as f32);
+        }
+        sink.pair::<I>(row, area.first_column, &outside, &nearness, t.id);
+        for k in 0..3 {
+            for i in 0..LANES {
+                edge[k][i] = edge[k][i].wrapping_add(setup.step_y[k].wrapping_mul(2));
+            }
+        }
+        row += 2;
+    }
+}
+
+/// A triangle that the i32 path takes, row by row.
+#[inline(always)]
+fn small<I: Isa, S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
     let setup = Small::new(t.x, t.y, t.nearness, area.first_column, area.first_row);
     let shading = Shading::new(setup.nearness, setup.area as f32);
     let mut ramp = [[0_i32; LANES]; 3];
@@ -253,7 +320,7 @@ fn small<S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
                     | (left - i as i32);
                 nearness[i] = shading.nearness(e[1] as f32, e[2] as f32);
             }
-            sink.block(row, column, &outside, &nearness, t.id);
+            sink.block::<I>(row, column, &outside, &nearness, t.id);
             for k in 0..3 {
                 edge[k] = edge[k].wrapping_add(setup.step_x[k].wrapping_mul(LANES as i32));
             }
@@ -266,7 +333,7 @@ fn small<S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
 }
 
 #[inline(always)]
-fn large<S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
+fn large<I: Isa, S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
     let cross =
         |ax: i32, ay: i32, bx: i32, by: i32| i64::from(ax) * i64::from(by) - i64::from(ay) * i64::from(bx);
     let (mut x, mut y, mut n) = (t.x, t.y, t.nearness);
@@ -313,7 +380,7 @@ fn large<S: Sink>(t: &Triangle, area: &Area, sink: &mut S) {
                 let e2 = edge[2] + along * step_x[2];
                 nearness[i] = shading.nearness(e1 as f32, e2 as f32);
             }
-            sink.block(row, area.first_column + column, &outside, &nearness, t.id);
+            sink.block::<I>(row, area.first_column + column, &outside, &nearness, t.id);
             column += LANES as i32;
         }
         for k in 0..3 {

@@ -5,7 +5,8 @@
 use super::SoftwareQueries;
 use super::instance::Footprint;
 use super::pass::DrawCall;
-use super::raster::{ALL_LANES, Id, LANES, Rows, Sink, negative};
+use super::raster::{ALL_LANES, HALF, Id, LANES, Rows, Sink};
+use super::simd::Isa;
 use super::vertex::Screen;
 use super::waves::{self, MOST_BANDS};
 use crate::geom::View;
@@ -125,12 +126,36 @@ impl Sink for VisibilitySink<'_> {
     }
 
     #[inline(always)]
-    fn block(&mut self, row: i32, column: i32, outside: &[i32; LANES], nearness: &[f32; LANES], id: Id) {
-        let mut covered = negative(outside) ^ ALL_LANES;
+    fn block<I: Isa>(
+        &mut self,
+        row: i32,
+        column: i32,
+        outside: &[i32; LANES],
+        nearness: &[f32; LANES],
+        id: Id,
+    ) {
+        let mut covered = I::negative(outside) ^ ALL_LANES;
         while covered != 0 {
             let i = covered.trailing_zeros();
             covered &= covered - 1;
             self.sample(row, column + i as i32, nearness[i as usize], id);
+        }
+    }
+
+    #[inline(always)]
+    fn pair<I: Isa>(
+        &mut self,
+        row: i32,
+        column: i32,
+        outside: &[i32; LANES],
+        nearness: &[f32; LANES],
+        id: Id,
+    ) {
+        let mut covered = I::negative(outside) ^ ALL_LANES;
+        while covered != 0 {
+            let i = covered.trailing_zeros() as usize;
+            covered &= covered - 1;
+            self.sample(row + (i / HALF) as i32, column + (i % HALF) as i32, nearness[i], id);
         }
     }
 
