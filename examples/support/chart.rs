@@ -32,7 +32,7 @@ where
         .x_desc("frame")
         .y_desc(unit)
         .x_label_formatter(&whole)
-        .y_label_formatter(&|y| format!("{y}"))
+        .y_label_formatter(&|y| format!("{}", (y * 1e6).round() / 1e6))
         .draw()?;
     Ok(chart)
 }

@@ -4,6 +4,7 @@ use std::env;
 
 use super::flags::Flags;
 use super::scenario::Scenario;
+use super::stage::Gpu;
 use super::window::NotShown;
 use super::{headless, window};
 
@@ -21,6 +22,7 @@ pub fn run(flags: &Flags, scenario: Scenario) -> anyhow::Result<()> {
     }
     let Some(NotShown { why, scenario }) = window::show(flags, scenario)? else { return Ok(()) };
     println!("No window could be opened ({why:#}): running without one (as with --headless).");
+    println!("If that is for want of a graphics adapter: {}.", Gpu::remedy());
     headless::run(flags, scenario)
 }
 

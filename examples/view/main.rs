@@ -13,10 +13,11 @@ mod walk;
 
 use std::path::PathBuf;
 
-use anyhow::ensure;
+use anyhow::{Context, ensure};
 use clap::Args;
 use support::demo;
 use support::flags::Flags;
+use support::program::Program;
 use support::scenario::{Flight, Scenario};
 use tercet::geom::Aabb;
 use tercet::scene::import;
@@ -35,9 +36,25 @@ struct Scenery {
     camera: Option<PathBuf>,
 }
 
+const PROGRAM: Program = Program {
+    examples: &[
+        ("assets/bunny.glb", "a window to fly about in; the next line's run where there is no display"),
+        ("assets/bunny.glb --headless", "one walk, with its figures and pictures"),
+        ("assets/bunny.glb --camera PATH.csv --oracle", "check each frame against the exact visible set"),
+    ],
+    refused: &[
+        ("objects", "--objects has no meaning here: the file says what there is"),
+        ("scale", "--scale has no meaning here: the file says how much there is"),
+        ("seed", "--seed has no meaning here: nothing is made by chance"),
+        ("still", "--static has no meaning here: nothing moves"),
+    ],
+    ..Program::demo("view", "A walk through any glTF scene.")
+};
+
 fn main() -> anyhow::Result<()> {
-    let (mut flags, scenery) = Flags::parse_with::<Scenery>("view", "A walk through any glTF scene.");
-    let imported = import::load(&scenery.file)?;
+    let (mut flags, scenery) = Flags::parse_for::<Scenery>(&PROGRAM);
+    let imported = import::load(&scenery.file)
+        .with_context(|| format!("{} is to be a .glb or .gltf file", scenery.file.display()))?;
     #[cfg(feature = "lod")]
     let imported = with_levels(imported, &flags)?;
     println!("{}", imported.report);

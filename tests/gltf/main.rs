@@ -150,14 +150,16 @@ fn an_interior_hides_most_of_itself() {
     let mut world = hecs::World::new();
     imported.spawn(&mut world);
     assert_eq!(world.query::<(&Drawable, &NotOccluder)>().iter().count(), panes);
+    let mut culler = Culler::new(policy::by_name("stop-and-wait").expect("a policy"));
     let mut scene = Scene::new(SceneConfig::default());
+    // There is only one frame: leaves are to be fine from the start.
+    scene.adapt([&mut culler]);
     scene.sync(&world);
     let eye = Vec3::new(7.0, 1.7, 9.0);
     let viewport = Viewport::new(320, 180);
     let view = View::look_at(eye, Vec3::new(38.0, 1.5, 38.0), 70.0, 0.05, viewport).expect("a view");
     let frustum = Frustum::new(&view);
     let in_view = imported.model.objects.iter().filter(|o| frustum.intersects(&o.bounds)).count();
-    let mut culler = Culler::new(policy::by_name("stop-and-wait").expect("a policy"));
     let draw_all = |pass: &mut tercet::query::software::SoftwarePass,
                     objects: &[tercet::scene::ObjectRef]| {
         for object in objects {

@@ -1,5 +1,6 @@
 //! A graphics adapter with a device: what an app has anyway, long before it asks what is hidden.
 
+use std::env;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
@@ -52,6 +53,16 @@ impl Gpu {
             required_features: GpuQueries::wanted_features(adapter),
             required_limits: adapter.limits(),
             ..Default::default()
+        }
+    }
+
+    /// What to do where there is none.
+    pub fn remedy() -> String {
+        match env::var("WGPU_BACKEND") {
+            Ok(value) => format!(
+                "WGPU_BACKEND={value} allows no backend that this machine has: unset it, or set it to vulkan or gl"
+            ),
+            Err(_) => "install a Vulkan or OpenGL driver; Mesa's needs no GPU".to_owned(),
         }
     }
 

@@ -47,10 +47,12 @@ impl Stage {
         match flags.backend {
             Backend::Software => Ok(Self::software(detail)),
             Backend::Wgpu => {
-                let gpu = Gpu::open()?.context(
-                    "--backend wgpu: no graphics adapter was found; install a Vulkan or OpenGL driver \
-                     (Mesa's lavapipe is one that needs no GPU), or use --backend software",
-                )?;
+                let gpu = Gpu::open()?.with_context(|| {
+                    format!(
+                        "--backend wgpu: no graphics adapter was found; {}, or use --backend software",
+                        Gpu::remedy()
+                    )
+                })?;
                 Self::on(gpu, detail)
             }
             Backend::Auto => Ok(Self::best(Gpu::open(), detail)),

@@ -104,8 +104,7 @@ impl App {
         let size = ui.available_size();
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         let ctx = ui.ctx().clone();
-        let has_keys = !ctx.egui_wants_keyboard_input();
-        ctx.input(|input| self.fly.steer(input, &response, has_keys));
+        self.fly.steer(&response);
         let part = if self.engine.paused { 0.0 } else { self.stride };
         self.fly.follow(&self.engine.scenario.flight, part);
         let most = self.engine.gpu().most_pixels_a_side().min(Viewport::MAX_SIDE);

@@ -38,7 +38,7 @@ impl Layers {
             (&mut self.nodes, "boxes of nodes"),
             (&mut self.culled, "boxes of what was culled in the frustum"),
             (&mut self.awake, "boxes of objects that are awake"),
-            (&mut self.proxies, "proxies: what questions rasterise"),
+            (&mut self.proxies, "proxies, unless the camera is frozen"),
         ]
     }
 }

@@ -1,6 +1,6 @@
 //! A camera that is flown by hand, or flies by itself.
 
-use eframe::egui::{InputState, Key, PointerButton, Response};
+use eframe::egui::{Key, PointerButton, Response};
 use glam::{Mat3, Vec3};
 use tercet::worlds::Pose;
 
@@ -56,32 +56,35 @@ impl Fly {
     }
 
     /// Takes keys, and the mouse over the picture. Whoever moves the camera flies it from then on.
-    pub fn steer(&mut self, input: &InputState, picture: &Response, has_keys: bool) {
-        let drag = picture.drag_delta();
+    pub fn steer(&mut self, picture: &Response) {
+        // Before the input is looked at: a response locks it, too.
+        let (drag, hovered) = (picture.drag_delta(), picture.hovered());
         let turned = picture.dragged_by(PointerButton::Primary) && drag.length_sq() > 0.0;
+        let has_keys = !picture.ctx.egui_wants_keyboard_input();
         if turned {
             self.yaw -= drag.x * TURN;
             self.pitch = (self.pitch - drag.y * TURN).clamp(-STEEPEST, STEEPEST);
         }
-        if picture.hovered() {
+        let axes = self.axes();
+        let keys = [
+            (Key::W, -axes.z_axis),
+            (Key::S, axes.z_axis),
+            (Key::D, axes.x_axis),
+            (Key::A, -axes.x_axis),
+            (Key::E, Vec3::Y),
+            (Key::Q, -Vec3::Y),
+        ];
+        let (way, hurry, seconds, wheel) = picture.ctx.input(|input| {
+            let down = keys.into_iter().filter(|(key, _)| has_keys && input.key_down(*key));
+            let hurry = if input.modifiers.shift { 5.0 } else { 1.0 };
+            let way: Vec3 = down.map(|(_, way)| way).sum();
+            (way, hurry, input.stable_dt.min(0.1), input.smooth_scroll_delta().y)
+        });
+        if hovered {
             // A notch of the wheel is about 50 points.
-            self.speed = (self.speed * (input.smooth_scroll_delta().y * 0.005).exp()).clamp(1e-4, 1e6);
+            self.speed = (self.speed * (wheel * 0.005).exp()).clamp(1e-4, 1e6);
         }
-        let mut way = Vec3::ZERO;
-        if has_keys {
-            let axes = self.axes();
-            let keys = [
-                (Key::W, -axes.z_axis),
-                (Key::S, axes.z_axis),
-                (Key::D, axes.x_axis),
-                (Key::A, -axes.x_axis),
-                (Key::E, Vec3::Y),
-                (Key::Q, -Vec3::Y),
-            ];
-            way = keys.into_iter().filter(|(key, _)| input.key_down(*key)).map(|(_, way)| way).sum();
-        }
-        let hurry = if input.modifiers.shift { 5.0 } else { 1.0 };
-        self.eye += way.normalize_or_zero() * self.speed * hurry * input.stable_dt.min(0.1);
+        self.eye += way.normalize_or_zero() * self.speed * hurry * seconds;
         self.follows &= !turned && way == Vec3::ZERO;
     }
 
@@ -109,6 +112,7 @@ impl Fly {
 
 #[cfg(test)]
 mod tests {
+    use eframe::egui::{Context, Event, Modifiers, RawInput, Rect, Sense, pos2, vec2};
     use tercet::worlds::CameraPath;
 
     use super::*;
@@ -123,5 +127,42 @@ mod tests {
             let got = got.normalize();
             assert!(want.distance(got) < 1e-5, "{got} instead of {want}");
         }
+    }
+
+    #[test]
+    fn who_drags_or_holds_a_key_flies() {
+        let path = Flight::Path(CameraPath::new(50.0, [(Vec3::ZERO, Vec3::NEG_Z), (Vec3::ONE, Vec3::NEG_Z)]));
+        let at = |x: f32| Event::PointerMoved(pos2(x, 100.0));
+        let button = |pressed| Event::PointerButton {
+            pos: pos2(100.0, 100.0),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        let w = Event::Key {
+            key: Key::W,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        let fly = |passes: &[&[Event]]| {
+            let (ctx, mut fly) = (Context::default(), Fly::new(&path, 1.0, 1.0));
+            for events in passes {
+                let screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 300.0)));
+                let input = RawInput { screen_rect, events: events.to_vec(), ..RawInput::default() };
+                let _ = ctx.run_ui(input, |ui| {
+                    let size = ui.available_size();
+                    fly.steer(&ui.allocate_exact_size(size, Sense::click_and_drag()).1);
+                });
+            }
+            fly
+        };
+        let left = fly(&[]);
+        let (start, dragged) =
+            (left.pose(), fly(&[&[at(100.0)], &[button(true)], &[at(160.0)], &[at(190.0)]]));
+        assert!(left.follows && !dragged.follows && dragged.pose().target.x < start.target.x);
+        let flown = fly(&[&[at(100.0)], &[w], &[]]);
+        assert!(!flown.follows && flown.pose().eye.z < start.eye.z);
     }
 }

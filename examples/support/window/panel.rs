@@ -47,7 +47,9 @@ fn figures(ui: &mut Ui, engine: &Engine) {
         count(last.in_frustum.into())
     ));
     ui.label(format!("{} triangles", count(last.drawn_triangles as f64)));
-    ui.label(format!("{:.1} ms; {} questions in {} waves", last.frame_ms, last.queries, last.waves));
+    ui.label(format!("{} questions in {} waves", last.queries, last.waves));
+    let seconds = ui.input(|input| input.stable_dt);
+    ui.label(format!("engine {:.1} ms; window {:.0} ms", last.frame_ms, seconds * 1e3));
     let tree = engine.scene.tree().stats();
     ui.label(format!("tree: {} nodes, {} deep", count(tree.nodes as f64), tree.depth));
 }

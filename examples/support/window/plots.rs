@@ -25,6 +25,7 @@ pub fn show(ui: &mut Ui, records: &VecDeque<FrameRecord>) {
     let height = ui.available_height();
     ui.columns(PLOTS.len(), |columns| {
         for (ui, (title, curves)) in columns.iter_mut().zip(PLOTS) {
+            let unit = if title == "milliseconds" { " ms" } else { "" };
             Plot::new(title)
                 .legend(Legend::default())
                 .height(height)
@@ -39,7 +40,7 @@ pub fn show(ui: &mut Ui, records: &VecDeque<FrameRecord>) {
                         let points: PlotPoints<'_> =
                             records.iter().map(|f| [f64::from(f.frame), value(f)]).collect();
                         let last = records.back().map_or(0.0, value);
-                        plot.line(Line::new(format!("{name} {}", brief(last)), points).color(color));
+                        plot.line(Line::new(format!("{name} {}{unit}", brief(last)), points).color(color));
                     }
                 });
         }
