@@ -163,7 +163,7 @@ mod tests {
         let left = fly(&[]);
         let (start, dragged) =
             (left.pose(), fly(&[&[at(100.0)], &[button(true)], &[at(160.0)], &[at(190.0)]]));
-        assert!(left.follows && !dragged.follows && dragged.pose().target.x < start.target.x);
+        assert!(left.follows && !dragged.follows && dragged.pose().target.x > start.target.x);
         let flown = fly(&[&[at(100.0)], &[w], &[]]);
         assert!(!flown.follows && flown.pose().eye.z < start.eye.z);
     }
