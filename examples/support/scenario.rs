@@ -1,7 +1,7 @@
 //! Worlds with a flight through them: what the demos fly through, and programs that compare.
 
 use hecs::World;
-use tercet::geom::View;
+use tercet::geom::{View, Viewport};
 use tercet::worlds::{self, CameraPath, Pose, Swarm, power_plant, teapots};
 
 use super::flags::Flags;
@@ -89,8 +89,12 @@ impl Scenario {
     /// The view of one frame of `flags.frames`.
     pub fn view(&self, frame: u32, flags: &Flags) -> anyhow::Result<View> {
         let t = flags.flight_end()? * frame as f32 / (flags.frames - 1).max(1) as f32;
-        let pose = self.flight.pose(t);
-        Ok(View::look_at(pose.eye, pose.target, pose.fov_y_degrees, self.near, flags.viewport())?)
+        self.look(self.flight.pose(t), flags.viewport())
+    }
+
+    /// The view of a pose.
+    pub fn look(&self, pose: Pose, viewport: Viewport) -> anyhow::Result<View> {
+        Ok(View::look_at(pose.eye, pose.target, pose.fov_y_degrees, self.near, viewport)?)
     }
 }
 

@@ -129,20 +129,33 @@ impl Nearness {
     }
 }
 
-/// Reads a depth texture, by a compute shader: OpenGL cannot copy it.
+/// Reads a depth texture.
 pub fn read_depth(gpu: &Gpu, depth: &wgpu::Texture, view: &View) -> Nearness {
+    let sign = match view.depth() {
+        DepthDirection::Reversed => 1.0,
+        DepthDirection::Standard => -1.0,
+    };
+    let words = read_texels(gpu, depth, view, "bitcast<u32>(texel.x)");
+    let values = words.into_iter().map(|word| sign * f32::from_bits(word)).collect();
+    Nearness { width: view.viewport().width, samples: view.samples(), values }
+}
+
+/// Reads the samples of a view's viewport, all of a pixel together and pixels row by row: of each
+/// `texel` the `word` that an expression in WGSL makes of it. It takes a compute shader: OpenGL
+/// cannot copy depth, and nobody can copy several samples a pixel.
+pub fn read_texels(gpu: &Gpu, texture: &wgpu::Texture, view: &View, word: &str) -> Vec<u32> {
     let viewport = view.viewport();
     let samples = view.samples();
-    let (texture_type, samples_loaded) =
+    let (texture_type, sample) =
         if samples > 1 { ("texture_multisampled_2d<f32>", "i32(k)") } else { ("texture_2d<f32>", "0") };
     let source = format!(
-        "@group(0) @binding(0) var depth: {texture_type};
-         @group(0) @binding(1) var<storage, read_write> out: array<f32>;
+        "@group(0) @binding(0) var texture: {texture_type};
+         @group(0) @binding(1) var<storage, read_write> out: array<u32>;
          @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) at: vec3<u32>) {{
              if at.x >= {w}u || at.y >= {h}u {{ return; }}
              for (var k = 0u; k < {samples}u; k++) {{
-                 let texel = vec2<i32>(at.xy + vec2<u32>({x}u, {y}u));
-                 out[(at.y * {w}u + at.x) * {samples}u + k] = textureLoad(depth, texel, {samples_loaded}).x;
+                 let texel = textureLoad(texture, vec2<i32>(at.xy + vec2<u32>({x}u, {y}u)), {sample});
+                 out[(at.y * {w}u + at.x) * {samples}u + k] = {word};
              }}
          }}",
         w = viewport.width,
@@ -201,7 +214,7 @@ pub fn read_depth(gpu: &Gpu, depth: &wgpu::Texture, view: &View) -> Nearness {
     };
     let out = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let back = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let texture_view = depth.create_view(&Default::default());
+    let texture_view = texture.create_view(&Default::default());
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &layout,
@@ -220,13 +233,7 @@ pub fn read_depth(gpu: &Gpu, depth: &wgpu::Texture, view: &View) -> Nearness {
     encoder.copy_buffer_to_buffer(&out, 0, &back, 0, size);
     gpu.queue.submit([encoder.finish()]);
     let bytes = read_buffer(gpu, &back);
-    let depth = |word: &[u8; 4]| f32::from_le_bytes(*word);
-    let sign = match view.depth() {
-        DepthDirection::Reversed => 1.0,
-        DepthDirection::Standard => -1.0,
-    };
-    let values = bytes.as_chunks::<4>().0.iter().map(|word| sign * depth(word)).collect();
-    Nearness { width: viewport.width, samples, values }
+    bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect()
 }
 
 /// The bytes of a buffer that can be mapped.

@@ -38,16 +38,27 @@ pub struct Drawn {
 }
 
 impl Stage {
-    /// The backend that `--backend` names.
+    /// The backend that `--backend` names, on an adapter of its own.
     ///
     /// # Errors
     /// When there is no adapter and one is asked for, or it cannot be used.
     pub fn new(flags: &Flags) -> anyhow::Result<Self> {
+        Self::on_one_of(flags, Gpu::open)
+    }
+
+    /// The same, on the adapter that `open` gives, if it is called for.
+    ///
+    /// # Errors
+    /// As [`Stage::new`].
+    pub fn on_one_of(
+        flags: &Flags,
+        open: impl FnOnce() -> anyhow::Result<Option<Gpu>>,
+    ) -> anyhow::Result<Self> {
         let detail = flags.detail()?;
         match flags.backend {
             Backend::Software => Ok(Self::software(detail)),
             Backend::Wgpu => {
-                let gpu = Gpu::open()?.with_context(|| {
+                let gpu = open()?.with_context(|| {
                     format!(
                         "--backend wgpu: no graphics adapter was found; {}, or use --backend software",
                         Gpu::remedy()
@@ -55,12 +66,12 @@ impl Stage {
                 })?;
                 Self::on(gpu, detail)
             }
-            Backend::Auto => Ok(Self::best(Gpu::open(), detail)),
+            Backend::Auto => Ok(Self::best(open(), detail)),
         }
     }
 
     /// The GPU if it is one and can be used, and else the CPU: nobody asked for a GPU.
-    pub fn best(gpu: anyhow::Result<Option<Gpu>>, detail: Detail) -> Self {
+    fn best(gpu: anyhow::Result<Option<Gpu>>, detail: Detail) -> Self {
         let stage = gpu.and_then(|gpu| match gpu.filter(Gpu::is_hardware) {
             Some(gpu) => Self::on(gpu, detail),
             None => Ok(Self::software(detail)),

@@ -110,7 +110,7 @@ impl App {
         let most = self.engine.gpu().most_pixels_a_side().min(Viewport::MAX_SIDE);
         let side = |points: f32| ((points * ctx.pixels_per_point()) as u32).clamp(1, most);
         let viewport = Viewport::new(side(size.x), side(size.y));
-        let view = self.engine.view(self.fly.pose(), viewport)?;
+        let view = self.engine.scenario.look(self.fly.pose(), viewport)?;
         self.engine.stage.keep_questions(self.layers.proxies);
         self.engine.watches_movers = self.layers.awake;
         let done = self.engine.frame(self.fly.pose(), viewport);
@@ -163,13 +163,16 @@ impl eframe::App for App {
         }
         let done = CentralPanel::no_frame().show(ui, |ui| self.picture(ui, frame));
         if let Err(error) = done.inner {
-            self.say(format!("{error:#}"));
             // If the device fails in culling, the CPU can still cull for as long as it draws.
             let device = matches!(error.downcast_ref(), Some(tercet::Error::Device { .. }));
-            if device && matches!(self.engine.stage, Stage::Wgpu(_)) {
-                let next = self.engine.use_gpu(false).map(|()| "going on in software".to_owned());
-                self.say(format!("{error:#}: {}", next.unwrap_or_else(|error| format!("{error:#}"))));
-            }
+            let next = match device && matches!(self.engine.stage, Stage::Wgpu(_)) {
+                true => self.engine.use_gpu(false).map(|()| ": going on in software"),
+                false => Ok(""),
+            };
+            self.say(match next {
+                Ok(next) => format!("{error:#}{next}"),
+                Err(also) => format!("{error:#}: {also:#}"),
+            });
         }
         let place = done.response.rect;
         if !self.picked.is_empty() {

@@ -9,7 +9,7 @@ use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::TreeConfig;
 use tercet::worlds::Pose;
 
-use crate::support::flags::{Backend, Flags};
+use crate::support::flags::Flags;
 use crate::support::painter::Painter;
 use crate::support::reference::Reference;
 use crate::support::report::FrameRecord;
@@ -53,16 +53,6 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// The backend that the flags name; the window's own device is there anyway.
-    pub fn stage(flags: &Flags, gpu: &Gpu) -> anyhow::Result<Stage> {
-        let detail = flags.detail()?;
-        match flags.backend {
-            Backend::Software => Ok(Stage::software(detail)),
-            Backend::Wgpu => Stage::on(gpu.clone(), detail),
-            Backend::Auto => Ok(Stage::best(Ok(Some(gpu.clone())), detail)),
-        }
-    }
-
     /// A scenario on a backend.
     pub fn new(flags: &Flags, scenario: Scenario, stage: Stage, gpu: Gpu) -> anyhow::Result<Self> {
         let (detail, tree) = (flags.detail()?, flags.tree()?);
@@ -122,17 +112,12 @@ impl Engine {
         self.frozen = if self.frozen.is_some() { None } else { Some(at) };
     }
 
-    /// The view of a pose.
-    pub fn view(&self, pose: Pose, viewport: Viewport) -> anyhow::Result<View> {
-        Ok(View::look_at(pose.eye, pose.target, pose.fov_y_degrees, self.scenario.near, viewport)?)
-    }
-
     /// One frame: the world moves on, and is culled for the camera, or for where it was frozen.
     pub fn frame(&mut self, camera: Pose, viewport: Viewport) -> anyhow::Result<()> {
         if !self.paused {
             self.scenario.step();
         }
-        let view = self.view(self.frozen.unwrap_or(camera), viewport)?;
+        let view = self.scenario.look(self.frozen.unwrap_or(camera), viewport)?;
         let Self { scene, eye, stage, scenario, .. } = self;
         self.places.clear();
         if self.watches_movers {

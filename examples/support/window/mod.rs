@@ -34,7 +34,7 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 use super::flags::Flags;
 use super::scenario::Scenario;
-use super::stage::Gpu;
+use super::stage::{Gpu, Stage};
 use app::App;
 use display::Display;
 use engine::Engine;
@@ -72,7 +72,8 @@ pub fn show(flags: &Flags, scenario: Scenario) -> anyhow::Result<Option<NotShown
     let created = Box::new(move |cx: &eframe::CreationContext<'_>| {
         let state = cx.wgpu_render_state.as_ref().context("it has no wgpu device")?;
         let gpu = Gpu::new(&state.adapter, state.device.clone(), state.queue.clone());
-        let (display, stage) = (Display::new(&gpu)?, Engine::stage(flags, &gpu)?);
+        let display = Display::new(&gpu)?;
+        let stage = Stage::on_one_of(flags, || Ok(Some(gpu.clone())))?;
         let scenario = taken.borrow_mut().take().context("it was opened twice")?;
         let engine = Engine::new(flags, scenario, stage, gpu)?;
         Ok(Box::new(App::new(flags, engine, display)?) as Box<dyn eframe::App>)
