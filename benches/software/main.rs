@@ -12,6 +12,7 @@ mod scene;
 
 use std::time::Instant;
 
+use rand::RngExt;
 use tercet::geom::{Proxy, View};
 use tercet::query::software::{SimdLevel, SoftwareQueries};
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
@@ -27,7 +28,12 @@ fn main() {
         "| scene | size | way | threads | Mtri/s | best | skipped | / plain | / 1 thread | ns a count | best | plain / it |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
-    for scene in [Scene::boxes(11_000), Scene::bunnies(36)] {
+    let scenes = [
+        Scene::boxes("boxes", 11_000, |dice| dice.random_range(5.0..50.0)),
+        Scene::boxes("small boxes", 11_000, |dice| f32::sqrt(dice.random_range(5.0..50.0))),
+        Scene::bunnies(36),
+    ];
+    for scene in scenes {
         for &(width, height) in sizes {
             compare(&scene, width, height, rounds);
         }
@@ -52,7 +58,7 @@ fn compare(scene: &Scene, width: u32, height: u32, rounds: usize) {
     let view = scene::view(width, height);
     let proxies = scene.proxies(&view);
     let mut ways = vec![Way::Plain(Box::new(Plain::new()))];
-    for level in [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Avx512] {
+    for level in SimdLevel::ALL {
         if level > SimdLevel::detect() {
             continue;
         }

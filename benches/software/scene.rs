@@ -22,17 +22,17 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// `count` boxes that cover about 5 to 50 pixels, a draw call each.
-    pub fn boxes(count: usize) -> Self {
+    /// `count` boxes, each as many pixels wide as its die says, a draw call each.
+    pub fn boxes(name: &'static str, count: usize, mut side: impl FnMut(&mut ChaCha8Rng) -> f32) -> Self {
         let mut dice = ChaCha8Rng::seed_from_u64(1);
         let cube = unit_cube();
         let calls = (0..count).map(|_| {
-            let side = f32::sqrt(dice.random_range(5.0..50.0));
+            let side = side(&mut dice);
             let (at, size) = place(&mut dice, 10.0..100.0, side);
             (cube.clone(), Affine3A::from_scale_rotation_translation(Vec3::splat(size), turn(&mut dice), at))
         });
         let calls = from_near_to_far(calls.collect());
-        Self { name: "boxes", calls, boxes: query_boxes(&mut dice) }
+        Self { name, calls, boxes: query_boxes(&mut dice) }
     }
 
     /// `count` bunnies of about 200 pixels a side, a draw call each.

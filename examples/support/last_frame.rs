@@ -116,9 +116,10 @@ impl Sun {
         let (x, y) = (at(p.x), at(-p.y));
         let mut lit = 0;
         for dy in -SOFTNESS..=SOFTNESS {
-            let row = depth.row((y + dy).clamp(0, last) as u32);
+            let row = (y + dy).clamp(0, last) as u32;
             for dx in -SOFTNESS..=SOFTNESS {
-                lit += i32::from(row[(x + dx).clamp(0, last) as usize] <= p.z + bias);
+                let column = (x + dx).clamp(0, last) as u32;
+                lit += i32::from(depth.at(column, row) <= p.z + bias);
             }
         }
         let side = 2 * SOFTNESS + 1;

@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 
-use super::software::{DrawCall, SoftwarePass, SoftwareQueries, VisibilityImage};
+use super::software::{DrawCall, Snapshot, SoftwarePass, SoftwareQueries, VisibilityImage};
 use super::{Answer, QueryBackend, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Aabb, Frustum, Question, View};
@@ -70,7 +70,7 @@ pub struct Oracle {
     /// Whose each draw call is.
     owners: Vec<ObjectRef>,
     /// The depth of what hides, while the frame's own holds more.
-    opaque: Vec<f32>,
+    opaque: Snapshot,
     image: VisibilityImage,
     questions: Vec<Question>,
 }
@@ -127,13 +127,12 @@ impl Oracle {
         let calls = self.pass.calls();
 
         self.queries.begin(view)?;
-        self.queries.rasterise_sorted(view, &calls[..occluders]);
+        self.queries.rasterise(view, &calls[..occluders]);
         let mut truth = Truth::default();
         self.ask_boxes(view, candidates, &mut truth)?;
 
         let calls = self.pass.calls();
-        self.opaque.clear();
-        self.opaque.extend_from_slice(self.queries.stored());
+        self.queries.keep(&mut self.opaque);
         if all > occluders {
             self.queries.rasterise(view, &calls[occluders..]);
         }
@@ -193,7 +192,7 @@ impl Oracle {
         }
         (0..want.height())
             .into_par_iter()
-            .map(|y| want.row(y).iter().zip(got.row(y)).filter(|(a, b)| a != b).count() as u64)
+            .map(|y| want.row(y).zip(got.row(y)).filter(|(a, b)| a != b).count() as u64)
             .sum()
     }
 

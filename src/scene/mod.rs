@@ -16,6 +16,7 @@ pub mod import;
 #[cfg(feature = "lod")]
 pub mod lod;
 pub mod mesh;
+pub(crate) mod meshlets;
 #[cfg(feature = "lod")]
 mod nearest;
 mod object;

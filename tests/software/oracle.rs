@@ -129,7 +129,7 @@ fn surfaces_are_what_the_pixels_show() {
         alone.begin(&view).expect("begin");
         let mesh = soup(&[surface.corners]);
         alone.draw(|pass| pass.draw_mesh(&mesh, &Affine3A::IDENTITY)).expect("draw");
-        assert_eq!(alone.depth().row(y)[x as usize], nearness);
+        assert_eq!(alone.depth().at(x, y), nearness);
         let inside = things.meshes[&surface.object.id].bounds();
         assert!(surface.corners.iter().all(|&c| inside.contains_point(c)));
         shown += 1;

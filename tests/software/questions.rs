@@ -9,21 +9,14 @@ use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 use crate::proxies::{flat, random_proxy};
 use crate::support::{LEVELS, add, dice, draw, pixel_view, pool, soup, triangles};
 
-/// A question whose answer nobody waits for.
-pub(crate) fn ask_anything(queries: &mut SoftwareQueries) {
-    queries.ask(Ticket(0), &[flat(PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 }, 0.5)], Want::Any).expect("ask");
-    queries.answers(Wait::Block, |_, _| {}).expect("answers");
-}
-
 /// The plain loop of the contract: visible and covered samples.
 fn plain(proxy: &Proxy, queries: &SoftwareQueries) -> (u32, u32) {
     let (mut visible, mut total) = (0, 0);
     for y in proxy.rect.y0..proxy.rect.y1 {
-        let row = queries.depth().row(y);
         for x in proxy.rect.x0..proxy.rect.x1 {
             if proxy.covers(x, y) {
                 total += 1;
-                visible += u32::from(proxy.nearness(x, y) >= row[x as usize]);
+                visible += u32::from(proxy.nearness(x, y) >= queries.depth().at(x, y));
             }
         }
     }
@@ -182,7 +175,7 @@ fn boxes_are_not_hidden_by_their_own_triangles() {
         let mut queries = SoftwareQueries::new();
         draw(&mut queries, &view, &[soup(&all)]);
         let drawn: usize =
-            (0..viewport.height).map(|y| queries.depth().row(y).iter().filter(|&&n| n > 0.0).count()).sum();
+            (0..viewport.height).map(|y| queries.depth().row(y).filter(|&n| n > 0.0).count()).sum();
         compare(&mut queries, &[proxy]);
         let (visible, _) = plain(&proxy, &queries);
         assert!(visible as usize >= drawn, "{bounds:?} owns {drawn} samples, its proxy sees {visible}");

@@ -9,7 +9,7 @@ use tercet::query::QueryBackend;
 use tercet::query::software::{SimdLevel, SoftwareQueries};
 use tercet::scene::mesh::Mesh;
 
-pub(crate) const LEVELS: [SimdLevel; 3] = [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Avx512];
+pub(crate) const LEVELS: [SimdLevel; 4] = SimdLevel::ALL;
 
 pub(crate) fn dice(seed: u64) -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(seed)
@@ -54,7 +54,7 @@ pub(crate) fn add(queries: &mut SoftwareQueries, meshes: &[Mesh]) {
 /// The whole depth, row after row.
 pub(crate) fn depth(queries: &SoftwareQueries) -> Vec<f32> {
     let image = queries.depth();
-    (0..image.height()).flat_map(|y| image.row(y).to_vec()).collect()
+    (0..image.height()).flat_map(|y| image.row(y)).collect()
 }
 
 /// A pool of a number of threads.

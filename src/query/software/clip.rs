@@ -3,7 +3,7 @@
 
 use glam::{DVec4, Vec4};
 
-use super::raster::Triangle;
+use super::large::Triangle;
 use super::vertex::{SUBPIXELS, Screen, Vertex};
 
 /// The guard band in subpixels from the viewport's centre: within ±2²² for the sake of `snap`,
@@ -22,11 +22,25 @@ struct Corner {
     vertex: Option<Vertex>,
 }
 
-/// Clips a triangle and hands out a fan of what remains. `clip` are its clip-space corners,
-/// `vertices` their projections. Degenerate and non-finite triangles hand out nothing.
-pub(crate) fn clip(screen: &Screen, clip: [Vec4; 3], vertices: [Vertex; 3], mut emit: impl FnMut(Triangle)) {
+/// What is left of a triangle: triangles around its first corner.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Fan {
+    triangles: [Triangle; MOST_CORNERS - 2],
+    count: usize,
+}
+
+impl Fan {
+    pub(crate) fn triangles(&self) -> &[Triangle] {
+        &self.triangles[..self.count]
+    }
+}
+
+/// Clips a triangle. `clip` are its clip-space corners, `vertices` their projections. Of degenerate
+/// and non-finite triangles nothing is left.
+pub(crate) fn clip(screen: &Screen, clip: [Vec4; 3], vertices: [Vertex; 3]) -> Fan {
+    let mut fan = Fan::default();
     if clip.iter().any(|c| !c.is_finite()) {
-        return;
+        return fan;
     }
     let mut polygon = Polygon::default();
     for (position, vertex) in clip.iter().zip(vertices) {
@@ -47,12 +61,19 @@ pub(crate) fn clip(screen: &Screen, clip: [Vec4; 3], vertices: [Vertex; 3], mut 
     }
     let mut projected = [Vertex::default(); MOST_CORNERS];
     for (vertex, corner) in projected.iter_mut().zip(polygon.corners()) {
-        let Some(p) = project(screen, corner) else { return };
+        let Some(p) = project(screen, corner) else { return fan };
         *vertex = p;
     }
     for i in 2..polygon.len {
-        emit(Triangle::new([projected[0], projected[i - 1], projected[i]]));
+        let corners = [projected[0], projected[i - 1], projected[i]];
+        fan.triangles[fan.count] = Triangle {
+            x: corners.map(|c| c.x),
+            y: corners.map(|c| c.y),
+            nearness: corners.map(|c| c.nearness),
+        };
+        fan.count += 1;
     }
+    fan
 }
 
 #[derive(Clone, Copy)]

@@ -1,18 +1,17 @@
 //! Answers: how many samples of a proxy are in sight.
 //!
-//! The plain loop of the contract looks at every sample. Here whole tiles are decided at once, and
-//! the result is the same to the sample, by monotonicity: for fixed `dy`, `(a·dx + b·dy) + c` is a
+//! The plain loop of the contract looks at every sample. Here whole nodes of the hierarchy are
+//! decided at once, sixteen children by sixteen, and the result is the same to the sample, by monotonicity: for fixed `dy`, `(a·dx + b·dy) + c` is a
 //! chain of correctly rounded f32 operations, each monotone in its argument, so its value is
 //! monotone in `dx`, rising or falling with the sign of `a`; likewise in `dy`. Over a rectangle of
 //! samples it is therefore least and greatest at the corners that the signs of `a` and `b` name,
 //! *including* rounding. The least of several such functions is bounded by the least of their
 //! bounds.
 
-#![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
-
 use super::depth::Depth;
-use super::hi_z::{HiZ, TILE_HEIGHT, TILE_WIDTH};
-use super::raster::LANES;
+use super::hi_z::HiZ;
+use super::isa::{ALL, Isa, Mask, splat_each};
+use super::layout::{BLOCK_BITS, LANE_X, LANE_Y, TILE, TILE_BITS, within};
 use crate::geom::{PixelRect, Proxy};
 
 /// The depth that a question is put to.
@@ -32,301 +31,273 @@ pub(crate) fn is_usable(proxy: &Proxy) -> bool {
     proxy.edges.iter().all(fits) && proxy.planes.iter().all(fits) && !proxy.nearest.is_nan()
 }
 
-/// Lanes for the six edges; the others are 0 everywhere, which covers.
-const EDGES: usize = 8;
-/// Lanes of those that a proxy can use.
-const USED_EDGES: usize = 6;
-/// Lanes for the three planes, and `nearest` as a fourth.
-const PLANES: usize = 4;
+/// A proxy of at most so many tiles is counted sample by sample: to judge tiles first takes longer.
+const FEW_TILES: u32 = 12;
 
-/// Affine functions, a lane each.
-#[derive(Clone, Copy)]
-struct Functions<const N: usize> {
-    a: [f32; N],
-    b: [f32; N],
-    c: [f32; N],
-}
-
-impl<const N: usize> Functions<N> {
-    const ZERO: Self = Self { a: [0.0; N], b: [0.0; N], c: [0.0; N] };
-
-    #[inline(always)]
-    fn set(&mut self, i: usize, function: [f32; 3]) {
-        (self.a[i], self.b[i], self.c[i]) = (function[0], function[1], function[2]);
-    }
-
-    /// The greatest and the least value of each function over the samples of a rectangle, given
-    /// by the offsets of its first and last sample.
-    #[inline(always)]
-    fn extremes(&self, first: [f32; 2], last: [f32; 2]) -> ([f32; N], [f32; N]) {
-        let mut greatest = [0.0; N];
-        let mut least = [0.0; N];
-        for i in 0..N {
-            let (a, b, c) = (self.a[i], self.b[i], self.c[i]);
-            let high_x = if a >= 0.0 { last[0] } else { first[0] };
-            let low_x = if a >= 0.0 { first[0] } else { last[0] };
-            let high_y = if b >= 0.0 { last[1] } else { first[1] };
-            let low_y = if b >= 0.0 { first[1] } else { last[1] };
-            greatest[i] = (a * high_x + b * high_y) + c;
-            least[i] = (a * low_x + b * low_y) + c;
-        }
-        (greatest, least)
-    }
-}
-
-/// A proxy in lanes.
-struct Shape {
-    origin: [u32; 2],
-    edges: Functions<EDGES>,
-    planes: Functions<PLANES>,
-}
-
-impl Shape {
-    #[inline(always)]
-    fn new(proxy: &Proxy) -> Self {
-        let mut shape = Self { origin: proxy.origin(), edges: Functions::ZERO, planes: Functions::ZERO };
-        for (i, edge) in proxy.edges.iter().enumerate() {
-            shape.edges.set(i, *edge);
-        }
-        for (i, plane) in proxy.planes.iter().enumerate() {
-            shape.planes.set(i, *plane);
-        }
-        shape.planes.set(PLANES - 1, [0.0, 0.0, proxy.nearest]);
-        shape
-    }
-
-    #[inline(always)]
-    fn judge(&self, part: &PixelRect) -> Verdict {
-        let first = [offset(part.x0, self.origin[0]), offset(part.y0, self.origin[1])];
-        let last = [offset(part.x1 - 1, self.origin[0]), offset(part.y1 - 1, self.origin[1])];
-        let (greatest, least) = self.edges.extremes(first, last);
-        let (mut outside, mut cut) = (0, 0);
-        for i in 0..EDGES {
-            outside |= i32::from(greatest[i] < 0.0);
-            cut |= i32::from(least[i] < 0.0);
-        }
-        let (greatest, least) = self.planes.extremes(first, last);
-        Verdict {
-            outside: outside != 0,
-            inside: cut == 0,
-            entry_most: lesser(lesser(greatest[0], greatest[1]), lesser(greatest[2], greatest[3])),
-            entry_least: lesser(lesser(least[0], least[1]), lesser(least[2], least[3])),
-        }
-    }
-}
-
-/// What is known of a rectangle of samples.
-struct Verdict {
-    /// No sample is covered.
-    outside: bool,
-    /// Every sample is covered.
-    inside: bool,
-    /// The entry nearness of no sample is above this.
-    entry_most: f32,
-    /// The entry nearness of no sample is below this.
-    entry_least: f32,
-}
-
-/// The contract's `dx` and `dy`. Exact: a viewport's side fits f32 with a half to spare.
-#[inline(always)]
-fn offset(pixel: u32, origin: u32) -> f32 {
-    (pixel as i32 - origin as i32) as f32 + 0.5
-}
-
-#[inline(always)]
-fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// Room for the tiles yet to be looked at: four to begin with, and each level trades one for four.
-const STACK: usize = 64;
+/// Room for the nodes yet to be looked at: four to begin with, and each level trades one for
+/// sixteen.
+const STACK: usize = 128;
 
 /// Whether some sample of a proxy is in sight.
 #[inline(always)]
-pub(crate) fn any(scene: Scene<'_>, proxy: &Proxy) -> bool {
+pub(crate) fn any<I: Isa>(scene: Scene<'_>, proxy: &Proxy) -> bool {
+    let Some(question) = Asked::<I>::new(scene, proxy) else { return false };
     let mut found = false;
-    walk(
-        scene,
-        proxy,
+    question.walk(
         #[inline(always)]
-        |part, shape, verdict, (farthest, nearest), is_leaf| {
-            if verdict.entry_most < farthest {
-                return Step::Over;
-            }
-            if verdict.inside && verdict.entry_least >= nearest {
-                found = true;
-                return Step::Stop;
-            }
-            if !is_leaf {
-                return Step::Into;
-            }
-            found = samples(scene.depth, shape, part, tile_column(part)).0 > 0;
-            if found { Step::Stop } else { Step::Over }
+        |visit| {
+            found |= match visit {
+                Visit::Children { part, far, near } => part.inside & I::ge_f(part.entry_least, near) != 0 || {
+                    part.open &= !I::gt_f(far, part.entry_most);
+                    false
+                },
+                Visit::Samples { visible, .. } => visible != 0,
+            };
+            !found
         },
     );
     found
 }
 
-/// A proxy of at most so many rows, and [`LANES`] columns, is counted without a look at the
-/// hierarchy.
-const FEW_ROWS: u32 = 16;
-
 /// How many samples of a proxy are in sight, and how many it covers.
 #[inline(always)]
-pub(crate) fn dual(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
-    let rect = on_screen(scene, proxy);
-    if rect.x0 >= rect.x1 || rect.y0 >= rect.y1 {
-        return (0, 0);
-    }
-    if rect.width() <= LANES as u32 && rect.height() <= FEW_ROWS {
-        return samples(scene.depth, &Shape::new(proxy), &rect, rect.x0);
-    }
-    let (mut visible, mut total) = (0, 0);
-    walk(
-        scene,
-        proxy,
+pub(crate) fn dual<I: Isa>(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
+    let Some(question) = Asked::<I>::new(scene, proxy) else { return (0, 0) };
+    let (mut seen, mut total) = (0, 0);
+    question.walk(
         #[inline(always)]
-        |part, shape, verdict, (farthest, nearest), is_leaf| {
-            let area = (part.x1 - part.x0) * (part.y1 - part.y0);
-            if verdict.inside && verdict.entry_most < farthest {
-                total += area;
-                return Step::Over;
+        |visit| {
+            match visit {
+                Visit::Children { part, far, near } => {
+                    let visible = part.inside & I::ge_f(part.entry_least, near);
+                    let hidden = part.inside & I::gt_f(far, part.entry_most);
+                    if visible | hidden != 0 {
+                        let area = part.areas(visible);
+                        seen += area;
+                        total += area + part.areas(hidden & !visible);
+                        part.open &= !(visible | hidden);
+                    }
+                }
+                Visit::Samples { visible, covered } => {
+                    seen += visible.count_ones();
+                    total += covered.count_ones();
+                }
             }
-            if verdict.inside && verdict.entry_least >= nearest {
-                visible += area;
-                total += area;
-                return Step::Over;
-            }
-            if !is_leaf {
-                return Step::Into;
-            }
-            let (v, t) = samples(scene.depth, shape, part, tile_column(part));
-            visible += v;
-            total += t;
-            Step::Over
+            true
         },
     );
-    (visible, total)
+    (seen, total)
 }
 
-/// The pixels of a proxy that the depth buffer has; perhaps none.
-#[inline(always)]
-fn on_screen(scene: Scene<'_>, proxy: &Proxy) -> PixelRect {
-    let image = scene.depth.image();
-    PixelRect { x1: proxy.rect.x1.min(image.width()), y1: proxy.rect.y1.min(image.height()), ..proxy.rect }
+/// What a walk comes by.
+enum Visit<'v, I: Isa> {
+    /// The children of a node; the walk goes on into those that stay open.
+    Children { part: &'v mut Judged<I>, far: I::F, near: I::F },
+    /// The samples of a tile.
+    Samples { visible: Mask, covered: Mask },
 }
 
-/// Where to go from a tile.
-#[derive(PartialEq)]
-enum Step {
-    Into,
-    Over,
-    Stop,
+/// What is known of the samples of sixteen rectangles.
+struct Judged<I: Isa> {
+    /// Some sample may be covered.
+    open: Mask,
+    /// Every sample is covered.
+    inside: Mask,
+    /// The entry nearness of no sample is above this.
+    entry_most: I::F,
+    /// The entry nearness of no sample is below this.
+    entry_least: I::F,
+    /// Columns and rows.
+    size: [I::I; 2],
 }
 
-/// Walks the tiles that a proxy meets, coarse before fine.
-#[inline(always)]
-fn walk(
-    scene: Scene<'_>,
-    proxy: &Proxy,
-    mut visit: impl FnMut(&PixelRect, &Shape, &Verdict, (f32, f32), bool) -> Step,
-) {
-    let rect = on_screen(scene, proxy);
-    if rect.x0 >= rect.x1 || rect.y0 >= rect.y1 {
-        return;
-    }
-    let shape = Shape::new(proxy);
-    let (level, first, last) = scene.hi_z.cover(&rect);
-    let mut stack = [(0_u32, 0_u32, 0_u32); STACK];
-    let mut height = 0;
-    for y in first[1]..=last[1] {
-        for x in first[0]..=last[0] {
-            stack[height] = (level as u32, x, y);
-            height += 1;
+impl<I: Isa> Judged<I> {
+    /// The samples of some of the rectangles.
+    #[inline(always)]
+    fn areas(&self, mut lanes: Mask) -> u32 {
+        let areas = I::store(I::mul(self.size[0], self.size[1]));
+        let mut sum = 0;
+        while lanes != 0 {
+            sum += areas[lanes.trailing_zeros() as usize] as u32;
+            lanes &= lanes - 1;
         }
+        sum
     }
-    while height > 0 {
-        height -= 1;
-        let (level, x, y) = stack[height];
-        let (width, lines) = (TILE_WIDTH << level, TILE_HEIGHT << level);
-        let part = PixelRect {
-            x0: (x * width).max(rect.x0),
-            y0: (y * lines).max(rect.y0),
-            x1: ((x + 1) * width).min(rect.x1),
-            y1: ((y + 1) * lines).min(rect.y1),
+}
+
+/// A proxy that is asked about.
+struct Asked<'a, I: Isa> {
+    scene: Scene<'a>,
+    proxy: &'a Proxy,
+    /// Its pixels in the viewport; not empty.
+    rect: PixelRect,
+    lane_x: I::I,
+    lane_y: I::I,
+}
+
+impl<'a, I: Isa> Asked<'a, I> {
+    #[inline(always)]
+    fn new(scene: Scene<'a>, proxy: &'a Proxy) -> Option<Self> {
+        let image = scene.depth.image();
+        let rect = PixelRect {
+            x1: proxy.rect.x1.min(image.width()),
+            y1: proxy.rect.y1.min(image.height()),
+            ..proxy.rect
         };
-        if part.x0 >= part.x1 || part.y0 >= part.y1 {
-            continue;
+        let (lane_x, lane_y) = (I::load(&LANE_X), I::load(&LANE_Y));
+        (rect.x0 < rect.x1 && rect.y0 < rect.y1).then_some(Self { scene, proxy, rect, lane_x, lane_y })
+    }
+
+    /// Walks what the proxy meets, coarse before fine, until `visit` says false.
+    #[inline(always)]
+    fn walk(&self, mut visit: impl FnMut(Visit<'_, I>) -> bool) {
+        let rect = &self.rect;
+        let (first, last) = nodes(rect, TILE_BITS);
+        if (last[0] - first[0] + 1) * (last[1] - first[1] + 1) <= FEW_TILES {
+            for y in first[1]..=last[1] {
+                for x in first[0]..=last[0] {
+                    let (visible, covered) = self.samples(x << TILE_BITS, y << TILE_BITS);
+                    if !visit(Visit::Samples { visible, covered }) {
+                        return;
+                    }
+                }
+            }
+            return;
         }
-        let verdict = shape.judge(&part);
-        if verdict.outside {
-            continue;
+        // The lowest level where the proxy meets at most 2 × 2 nodes.
+        let (mut level, mut bits) = (0, BLOCK_BITS);
+        let (mut first, mut last) = nodes(rect, bits);
+        while last[0] - first[0] > 1 || last[1] - first[1] > 1 {
+            (level, bits) = (level + 1, bits + TILE_BITS);
+            (first, last) = nodes(rect, bits);
         }
-        let tile = scene.hi_z.tile(level as usize, x, y);
-        match visit(&part, &shape, &verdict, tile, level == 0) {
-            Step::Stop => return,
-            Step::Over => {}
-            Step::Into => {
-                for child in 0..4 {
-                    stack[height] = (level - 1, 2 * x + (child & 1), 2 * y + (child >> 1));
+        let mut stack = [(0_u32, 0_u32, 0_u32); STACK];
+        let mut height = 0;
+        for y in first[1]..=last[1] {
+            for x in first[0]..=last[0] {
+                stack[height] = (level, x, y);
+                height += 1;
+            }
+        }
+        while height > 0 {
+            height -= 1;
+            let (level, x, y) = stack[height];
+            let mut part = self.judge(level, x, y);
+            if part.open == 0 {
+                continue;
+            }
+            let (far, near) = self.scene.hi_z.node(level as usize, x, y);
+            let (far, near) = (I::load_f(far), I::load_f(near));
+            if !visit(Visit::Children { part: &mut part, far, near }) {
+                return;
+            }
+            let mut open = part.open;
+            while open != 0 {
+                let lane = open.trailing_zeros();
+                open &= open - 1;
+                let (x, y) = (4 * x + lane % 4, 4 * y + lane / 4);
+                if level > 0 {
+                    stack[height] = (level - 1, x, y);
                     height += 1;
+                    continue;
+                }
+                let (visible, covered) = self.samples(x << TILE_BITS, y << TILE_BITS);
+                if !visit(Visit::Samples { visible, covered }) {
+                    return;
                 }
             }
         }
     }
+
+    /// The contract's `dx` or `dy`. Exact: a viewport's side fits f32 with a half to spare.
+    #[inline(always)]
+    fn offset(&self, pixel: I::I, axis: usize) -> I::F {
+        let origin = I::splat(self.proxy.origin()[axis] as i32);
+        I::add_f(I::to_f(I::sub(pixel, origin)), I::splat_f(0.5))
+    }
+
+    /// Judges the children of a node.
+    #[inline(always)]
+    fn judge(&self, level: u32, x: u32, y: u32) -> Judged<I> {
+        let side = TILE << (TILE_BITS * level);
+        let rect = &self.rect;
+        let (x0, x1) = children::<I>(x, side, self.lane_x, rect.x0, rect.x1);
+        let (y0, y1) = children::<I>(y, side, self.lane_y, rect.y0, rect.y1);
+        let first = [self.offset(x0, 0), self.offset(y0, 1)];
+        let last = [self.offset(x1, 0), self.offset(y1, 1)];
+        let zero = I::splat_f(0.0);
+        let (mut outside, mut cut) = (I::gt(x0, x1) | I::gt(y0, y1), 0);
+        for edge in &self.proxy.edges {
+            let (greatest, least) = extremes::<I>(edge, first, last);
+            outside |= I::gt_f(zero, greatest);
+            cut |= I::gt_f(zero, least);
+        }
+        let nearest = I::splat_f(self.proxy.nearest);
+        let (mut entry_most, mut entry_least) = (nearest, nearest);
+        for plane in &self.proxy.planes {
+            let (greatest, least) = extremes::<I>(plane, first, last);
+            entry_most = I::min_f(greatest, entry_most);
+            entry_least = I::min_f(least, entry_least);
+        }
+        let one = I::splat(1);
+        let size = [I::add(I::sub(x1, x0), one), I::add(I::sub(y1, y0), one)];
+        let open = ALL & !outside;
+        Judged { open, inside: open & !cut, entry_most, entry_least, size }
+    }
+
+    /// The samples of the tile at a pixel: those in sight, and those covered.
+    #[inline(always)]
+    fn samples(&self, x: u32, y: u32) -> (Mask, Mask) {
+        let column = I::add(I::splat(x as i32), self.lane_x);
+        let row = I::add(I::splat(y as i32), self.lane_y);
+        let rect = &self.rect;
+        let end = I::gt(I::splat(rect.x1 as i32), column) & I::gt(I::splat(rect.y1 as i32), row);
+        let before = I::gt(I::splat(rect.x0 as i32), column) | I::gt(I::splat(rect.y0 as i32), row);
+        let in_rect = end & !before;
+        let (dx, dy) = (self.offset(column, 0), self.offset(row, 1));
+        let zero = I::splat_f(0.0);
+        let mut outer = zero;
+        for edge in &self.proxy.edges {
+            outer = I::min_f(value::<I>(edge, dx, dy), outer);
+        }
+        let covered = in_rect & I::ge_f(outer, zero);
+        let mut entry = I::splat_f(self.proxy.nearest);
+        for plane in &self.proxy.planes {
+            entry = I::min_f(value::<I>(plane, dx, dy), entry);
+        }
+        let (tile, _) = within(x, y);
+        let block = (y >> BLOCK_BITS) as usize * self.scene.depth.across() + (x >> BLOCK_BITS) as usize;
+        let kept = I::load_f(&self.scene.depth.blocks()[block].0[tile]);
+        (covered & I::ge_f(entry, kept), covered)
+    }
 }
 
-/// The first column of the tile that a part of one lies in.
+/// The nodes of `1 << bits` pixels a side that pixels lie in, ends included.
 #[inline(always)]
-fn tile_column(part: &PixelRect) -> u32 {
-    part.x0 / TILE_WIDTH * TILE_WIDTH
+fn nodes(rect: &PixelRect, bits: u32) -> ([u32; 2], [u32; 2]) {
+    ([rect.x0 >> bits, rect.y0 >> bits], [(rect.x1 - 1) >> bits, (rect.y1 - 1) >> bits])
 }
 
-/// The plain loop over the samples of a rectangle that lies in the [`LANES`] columns from
-/// `first_column` on: visible and covered ones.
+/// The first and the last pixels, between two, of the children of a node, on one axis.
 #[inline(always)]
-fn samples(depth: &Depth, shape: &Shape, part: &PixelRect, first_column: u32) -> (u32, u32) {
-    // Lanes are columns; those outside the part have no bit in `in_part`.
-    let mut in_part = [0_i32; LANES];
-    let mut edges_x = [[0.0_f32; LANES]; EDGES];
-    let mut planes_x = [[0.0_f32; LANES]; PLANES];
-    for i in 0..LANES {
-        let column = first_column + i as u32;
-        let dx = offset(column, shape.origin[0]);
-        in_part[i] = -(i32::from(column >= part.x0) & i32::from(column < part.x1));
-        for k in 0..EDGES {
-            edges_x[k][i] = shape.edges.a[k] * dx;
-        }
-        for k in 0..PLANES {
-            planes_x[k][i] = shape.planes.a[k] * dx;
-        }
-    }
-    let mut visible = [0_i32; LANES];
-    let mut total = [0_i32; LANES];
-    for row in part.y0..part.y1 {
-        let dy = offset(row, shape.origin[1]);
-        let mut edges_y = [0.0; EDGES];
-        let mut planes_y = [0.0; PLANES];
-        for k in 0..EDGES {
-            edges_y[k] = shape.edges.b[k] * dy;
-        }
-        for k in 0..PLANES {
-            planes_y[k] = shape.planes.b[k] * dy;
-        }
-        let start = row as usize * depth.stride() + first_column as usize;
-        let Some(nearness) = depth.all()[start..].first_chunk::<LANES>() else { continue };
-        for i in 0..LANES {
-            let (mut outer, mut entry) = (f32::INFINITY, f32::INFINITY);
-            for k in 0..USED_EDGES {
-                outer = lesser((edges_x[k][i] + edges_y[k]) + shape.edges.c[k], outer);
-            }
-            for k in 0..PLANES {
-                entry = lesser((planes_x[k][i] + planes_y[k]) + shape.planes.c[k], entry);
-            }
-            let covered = in_part[i] & -i32::from(outer >= 0.0);
-            total[i] -= covered;
-            visible[i] -= covered & -i32::from(entry >= nearness[i]);
-        }
-    }
-    (visible.iter().sum::<i32>() as u32, total.iter().sum::<i32>() as u32)
+fn children<I: Isa>(node: u32, side: i32, lanes: I::I, from: u32, end: u32) -> (I::I, I::I) {
+    let start = I::add(I::splat(4 * side * node as i32), I::mul(lanes, I::splat(side)));
+    let last = I::add(start, I::splat(side - 1));
+    (I::max(start, I::splat(from as i32)), I::min(last, I::splat(end as i32 - 1)))
+}
+
+/// A function of the contract, at sixteen places.
+#[inline(always)]
+fn value<I: Isa>(f: &[f32; 3], dx: I::F, dy: I::F) -> I::F {
+    let [a, b, c] = splat_each::<I, 3>(*f);
+    I::add_f(I::add_f(I::mul_f(a, dx), I::mul_f(b, dy)), c)
+}
+
+/// The greatest and the least value of a function over the samples of sixteen rectangles, given by
+/// their first and last.
+#[inline(always)]
+fn extremes<I: Isa>(f: &[f32; 3], first: [I::F; 2], last: [I::F; 2]) -> (I::F, I::F) {
+    let (high_x, low_x) = if f[0] >= 0.0 { (last[0], first[0]) } else { (first[0], last[0]) };
+    let (high_y, low_y) = if f[1] >= 0.0 { (last[1], first[1]) } else { (first[1], last[1]) };
+    (value::<I>(f, high_x, high_y), value::<I>(f, low_x, low_y))
 }

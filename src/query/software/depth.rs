@@ -1,33 +1,60 @@
 //! The depth buffer and its sink.
 
-use super::raster::{HALF, Id, LANES, Rows, Sink};
-use super::simd::Isa;
+use super::bands::BAND_ROWS;
+use super::hi_z::{Base, HiZ, STALE};
+use super::isa::{Isa, LANES, Mask};
+use super::layout::{BLOCK, BLOCK_BITS, BLOCK_PIXELS, Block, TILE_BITS, blocks, children, within};
+use super::sink::{Id, Rows, Sink};
+use crate::geom::PixelRect;
 
-/// Nearness of every pixel, row by row. A row has room for a block that starts at any column.
+/// Nearness of every pixel, block by block. What lies beyond the viewport is infinitely near, so
+/// that it hides nothing and is never drawn on.
 #[derive(Debug, Default)]
 pub(crate) struct Depth {
     width: u32,
     height: u32,
-    stride: usize,
-    nearness: Vec<f32>,
+    across: usize,
+    blocks: Vec<Block>,
 }
 
 impl Depth {
     /// Takes a size and clears.
     pub(crate) fn reset(&mut self, width: u32, height: u32, cleared: f32) {
-        self.width = width;
-        self.height = height;
-        self.stride = (width as usize).next_multiple_of(LANES) + LANES;
-        self.nearness.clear();
-        self.nearness.resize(self.stride * height as usize, cleared);
+        let down = height.div_ceil(BLOCK as u32) as usize;
+        self.across = width.div_ceil(BLOCK as u32) as usize;
+        (self.width, self.height) = (width, height);
+        self.blocks.clear();
+        self.blocks.resize(self.across * down, Block([[cleared; LANES]; LANES]));
+        let (odd_x, odd_y) = (width % BLOCK as u32 != 0, height % BLOCK as u32 != 0);
+        for row in 0..down {
+            for column in 0..self.across {
+                if (odd_x && column + 1 == self.across) || (odd_y && row + 1 == down) {
+                    self.pad(column as u32, row as u32);
+                }
+            }
+        }
     }
 
-    pub(crate) fn stride(&self) -> usize {
-        self.stride
+    fn pad(&mut self, column: u32, row: u32) {
+        let side = BLOCK as u32;
+        let block = &mut self.blocks[row as usize * self.across + column as usize];
+        for y in 0..side {
+            for x in 0..side {
+                if column * side + x >= self.width || row * side + y >= self.height {
+                    let (tile, lane) = within(x, y);
+                    block.0[tile][lane] = f32::INFINITY;
+                }
+            }
+        }
     }
 
-    pub(crate) fn all(&self) -> &[f32] {
-        &self.nearness
+    /// Blocks a row of blocks.
+    pub(crate) fn across(&self) -> usize {
+        self.across
+    }
+
+    pub(crate) fn blocks(&self) -> &[Block] {
+        &self.blocks
     }
 
     pub(crate) fn image(&self) -> DepthImage<'_> {
@@ -35,21 +62,35 @@ impl Depth {
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        self.nearness.capacity() * size_of::<f32>()
+        self.blocks.capacity() * size_of::<Block>()
     }
 
-    /// One sink a band of rows, from the top; fewer bands than `N` leave empty sinks.
-    pub(crate) fn sinks<const N: usize>(&mut self, band_rows: usize) -> [DepthSink<'_>; N] {
-        let (stride, last_column, height) = (self.stride, self.width as i32 - 1, self.height as i32);
-        let mut bands = self.nearness.chunks_mut(stride * band_rows);
-        std::array::from_fn(|band| {
-            let first = (band * band_rows) as i32;
-            let last = (first + band_rows as i32).min(height) - 1;
-            DepthSink {
-                nearness: bands.next().unwrap_or_default(),
-                stride,
-                rows: Rows { first, last, last_column },
-            }
+    /// What each band of rows holds, from the top.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Rows> + use<> {
+        let (width, height, blocks) = (self.width, self.height, self.across);
+        (0..height).step_by(BAND_ROWS as usize).map(move |first| Rows {
+            first: first as i32,
+            last: (first + BAND_ROWS).min(height) as i32 - 1,
+            last_column: width as i32 - 1,
+            blocks,
+        })
+    }
+
+    /// Blocks a band of rows; the last one has fewer.
+    pub(crate) fn blocks_a_band(&self) -> usize {
+        self.across * (BAND_ROWS as usize >> BLOCK_BITS)
+    }
+
+    /// One sink a band of rows, from the top.
+    pub(crate) fn sinks<'a>(&'a mut self, hi_z: &'a mut HiZ) -> impl Iterator<Item = DepthSink<'a>> {
+        let (many, rows) = (self.blocks_a_band(), self.rows());
+        let base = hi_z.base();
+        let hierarchy = base.farthest.chunks_mut(many).zip(base.stale.chunks_mut(many));
+        let bands = self.blocks.chunks_mut(many).zip(hierarchy);
+        bands.zip(rows).map(|((blocks, (farthest, stale)), rows)| DepthSink {
+            blocks,
+            base: Base { farthest, stale },
+            rows,
         })
     }
 }
@@ -73,17 +114,43 @@ impl<'a> DepthImage<'a> {
     }
 
     /// The nearness of a row's pixels, from the left; row 0 is the uppermost.
-    pub fn row(&self, y: u32) -> &'a [f32] {
-        &self.depth.nearness[y as usize * self.depth.stride..][..self.depth.width as usize]
+    pub fn row(&self, y: u32) -> impl ExactSizeIterator<Item = f32> + use<'a> {
+        let (depth, side) = (self.depth, BLOCK as u32);
+        let row = &depth.blocks[(y / side) as usize * depth.across..][..depth.across];
+        (0..depth.width).map(move |x| {
+            let (tile, lane) = within(x, y);
+            row[(x / side) as usize].0[tile][lane]
+        })
+    }
+
+    /// The nearness of a pixel.
+    pub fn at(&self, x: u32, y: u32) -> f32 {
+        let side = BLOCK as u32;
+        let (tile, lane) = within(x, y);
+        self.depth.blocks[(y / side) as usize * self.depth.across + (x / side) as usize].0[tile][lane]
     }
 }
 
 /// Keeps the greatest nearness of a band of rows.
 #[derive(Debug)]
 pub(crate) struct DepthSink<'a> {
-    nearness: &'a mut [f32],
-    stride: usize,
+    blocks: &'a mut [Block],
+    base: Base<'a>,
     rows: Rows,
+}
+
+/// Changes of a block after which its hierarchy is brought up to date before somebody is drawn for
+/// want of knowing better.
+const REFRESH_CALL: u32 = 8;
+/// The same before a triangle is drawn.
+const REFRESH_TRIANGLE: u32 = 48;
+
+impl DepthSink<'_> {
+    #[inline(always)]
+    fn refresh<I: Isa>(&mut self, block: usize) {
+        self.base.farthest[block] = I::store_f(I::least(&self.blocks[block].0));
+        self.base.stale[block] = STALE;
+    }
 }
 
 impl Sink for DepthSink<'_> {
@@ -95,62 +162,68 @@ impl Sink for DepthSink<'_> {
     }
 
     #[inline(always)]
-    fn block<I: Isa>(
-        &mut self,
-        row: i32,
-        column: i32,
-        outside: &[i32; LANES],
-        nearness: &[f32; LANES],
-        _: Id,
-    ) {
-        let start = (row - self.rows.first) as usize * self.stride + column as usize;
-        let Some(kept) = self.nearness[start..].first_chunk_mut::<LANES>() else { return };
-        let mut covered = [0.0_f32; LANES];
-        for i in 0..LANES {
-            covered[i] = masked(nearness[i], outside[i]);
-        }
-        I::keep_greatest(kept, &covered);
+    fn hides<I: Isa>(&mut self, rect: &PixelRect, nearest: f32) -> bool {
+        let nearest = I::splat_f(nearest);
+        let (mut hidden, rows) = (true, self.rows);
+        each_block(
+            &rows,
+            rect,
+            #[inline(always)]
+            |block, tiles| {
+            // Nothing nearer than what is there: the greatest nearness stays as it is.
+            let mut open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
+            if open != 0 && self.base.stale[block] & !STALE >= REFRESH_CALL {
+                self.refresh::<I>(block);
+                open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
+            }
+            hidden = open == 0;
+            hidden
+        });
+        hidden
     }
 
     #[inline(always)]
-    fn pair<I: Isa>(
-        &mut self,
-        row: i32,
-        column: i32,
-        outside: &[i32; LANES],
-        nearness: &[f32; LANES],
-        _: Id,
-    ) {
-        let start = (row - self.rows.first) as usize * self.stride + column as usize;
-        let mut covered = [0.0_f32; LANES];
-        for i in 0..LANES {
-            covered[i] = masked(nearness[i], outside[i]);
+    fn open_tiles<I: Isa>(&mut self, block: usize, greatest: I::F) -> Mask {
+        if self.base.stale[block] & !STALE >= REFRESH_TRIANGLE {
+            self.refresh::<I>(block);
         }
-        // A row has room for a block at any column, so what is left of the band reaches beyond
-        // `stride` unless the upper row is its last.
-        let Some((upper, rest)) = self.nearness[start..].split_first_chunk_mut::<HALF>() else { return };
-        let mut none = [0.0_f32; HALF];
-        let lower = rest.get_mut(self.stride - HALF..).and_then(|rest| rest.first_chunk_mut::<HALF>());
-        let lower = lower.unwrap_or(&mut none);
-        let mut kept = [0.0_f32; LANES];
-        kept[..HALF].copy_from_slice(upper);
-        kept[HALF..].copy_from_slice(lower);
-        I::keep_greatest(&mut kept, &covered);
-        upper.copy_from_slice(&kept[..HALF]);
-        lower.copy_from_slice(&kept[HALF..]);
+        I::gt_f(greatest, I::load_f(&self.base.farthest[block]))
     }
 
     #[inline(always)]
-    fn sample(&mut self, row: i32, column: i32, nearness: f32, _: Id) {
-        let kept = &mut self.nearness[(row - self.rows.first) as usize * self.stride + column as usize];
+    fn tile<I: Isa>(&mut self, block: usize, tile: usize, covered: Mask, nearness: I::F, _: Id) {
+        let pixels = &mut self.blocks[block].0[tile];
+        let kept = I::load_f(pixels);
+        *pixels = I::store_f(I::blend_f(covered, kept, I::max_f(nearness, kept)));
+        self.base.stale[block] = (self.base.stale[block] | STALE) + 1;
+    }
+
+    #[inline(always)]
+    fn sample(&mut self, at: usize, nearness: f32, _: Id) {
+        let block = at / BLOCK_PIXELS;
+        let kept = &mut self.blocks[block].0[at / LANES % LANES][at % LANES];
         // Stored in any case: which one is nearer cannot be foretold.
         *kept = if nearness > *kept { nearness } else { *kept };
+        self.base.stale[block] = (self.base.stale[block] | STALE) + 1;
     }
 }
 
-/// A nearness, or minus infinity if `outside` is negative. In bits, for want of branches.
+/// Calls `f` with the blocks of a band that some of its pixels lie in, and the tiles of each, until
+/// it says false.
 #[inline(always)]
-fn masked(nearness: f32, outside: i32) -> f32 {
-    let mask = (outside >> 31) as u32;
-    f32::from_bits((nearness.to_bits() & !mask) | (f32::NEG_INFINITY.to_bits() & mask))
+pub(crate) fn each_block(rows: &Rows, rect: &PixelRect, mut f: impl FnMut(usize, Mask) -> bool) {
+    let (first, last) = blocks(rect);
+    let tile = |pixel: u32, block: u32| (pixel as i32 >> TILE_BITS) - (block << TILE_BITS) as i32;
+    for by in first[1]..=last[1] {
+        for bx in first[0]..=last[0] {
+            let tiles = children(
+                [tile(rect.x0, bx), tile(rect.y0, by)],
+                [tile(rect.x1 - 1, bx), tile(rect.y1 - 1, by)],
+            );
+            let block = rows.block((bx << BLOCK_BITS) as i32, (by << BLOCK_BITS) as i32);
+            if !f(block, tiles) {
+                return;
+            }
+        }
+    }
 }

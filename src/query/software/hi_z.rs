@@ -1,272 +1,215 @@
-//! The hierarchy over the depth buffer: per tile the farthest and the nearest nearness.
+//! The hierarchy over the depth buffer: the farthest and the nearest nearness, sixteen at a time.
 //!
-//! Level 0 has tiles of [`TILE_WIDTH`] × [`TILE_HEIGHT`] pixels, each further level halves both
-//! counts and rounds them up, so the last row and column of an odd size fold into a parent of
-//! their own. Tiles are refreshed lazily, before questions, where something was drawn. Nearness
-//! only grows within a frame, so a stale `farthest` is still a lower bound.
+//! A node of level 0 is a block and holds the extremes of its sixteen tiles; a node of each further
+//! level holds those of 4 × 4 nodes below, up to a single node. The farthest of level 0 are
+//! refreshed while drawing, where that lets something be skipped; all else before questions,
+//! where something was drawn. Nearness only grows within a frame, so a stale `farthest` is still a
+//! lower bound.
 
 use rayon::prelude::*;
 
 use super::depth::Depth;
-use super::raster::LANES;
+use super::isa::{Isa, LANES};
+use super::layout::{BLOCK_BITS, Block, TILE_BITS};
 use super::simd::{self, SimdLevel};
-use crate::geom::PixelRect;
 
-/// Pixels a tile, across: one block of lanes.
-pub(crate) const TILE_WIDTH: u32 = LANES as u32;
-/// Pixels a tile, down.
-pub(crate) const TILE_HEIGHT: u32 = 8;
+/// In the count of a block's changes: the hierarchy does not know of some of them.
+pub(crate) const STALE: u32 = 1 << 31;
 
-/// Touched tiles from which a refresh is shared among threads.
-const SHARED_FROM: u32 = 1024;
+/// Blocks from which a refresh is shared among threads.
+const SHARED_FROM: usize = 1024;
 
-/// The hierarchy. The last level is a single tile.
+/// The hierarchy. The last level is a single node.
 #[derive(Debug, Default)]
 pub(crate) struct HiZ {
     levels: Vec<Level>,
-    dirty: bool,
+    /// Of each block: changes since its farthest were refreshed, and [`STALE`].
+    stale: Vec<u32>,
 }
 
 #[derive(Debug, Default)]
 struct Level {
-    width: usize,
-    height: usize,
-    farthest: Vec<f32>,
-    nearest: Vec<f32>,
-    /// A bit a tile, by rows of whole words.
-    dirty: Vec<u64>,
+    across: usize,
+    farthest: Vec<[f32; LANES]>,
+    nearest: Vec<[f32; LANES]>,
 }
 
-impl Level {
-    fn reset(&mut self, width: usize, height: usize, cleared: f32) {
-        (self.width, self.height) = (width, height);
-        for (values, value) in [(&mut self.farthest, cleared), (&mut self.nearest, cleared)] {
-            values.clear();
-            values.resize(width * height, value);
-        }
-        self.dirty.clear();
-        self.dirty.resize(self.words() * height, 0);
-    }
-
-    fn words(&self) -> usize {
-        self.width.div_ceil(64)
-    }
-
-    /// The number of dirty tiles.
-    fn touched(&self) -> u32 {
-        self.dirty.iter().map(|word| word.count_ones()).sum()
-    }
-
-    fn mark(&mut self, x: usize, y: usize) {
-        let word = y * self.words() + x / 64;
-        self.dirty[word] |= 1 << (x % 64);
-    }
+/// What drawing needs of some blocks.
+#[derive(Debug)]
+pub(crate) struct Base<'a> {
+    pub(crate) farthest: &'a mut [[f32; LANES]],
+    pub(crate) stale: &'a mut [u32],
 }
 
 impl HiZ {
     /// Takes the size of a cleared depth buffer.
-    pub(crate) fn reset(&mut self, width: u32, height: u32, cleared: f32) {
-        let (mut w, mut h) = (width.div_ceil(TILE_WIDTH) as usize, height.div_ceil(TILE_HEIGHT) as usize);
+    pub(crate) fn reset(&mut self, depth: &Depth, cleared: f32) {
+        let (width, height) = (depth.image().width(), depth.image().height());
         let mut count = 0;
         loop {
+            let bits = BLOCK_BITS + TILE_BITS * count as u32;
+            let [across, down] = [width, height].map(|side| side.div_ceil(1 << bits) as usize);
             if count == self.levels.len() {
                 self.levels.push(Level::default());
             }
-            self.levels[count].reset(w, h, cleared);
+            let level = &mut self.levels[count];
+            level.across = across;
+            for values in [&mut level.farthest, &mut level.nearest] {
+                values.clear();
+                values.resize(across * down, [cleared; LANES]);
+            }
             count += 1;
-            if w == 1 && h == 1 {
+            if across == 1 && down == 1 {
                 break;
             }
-            (w, h) = (w.div_ceil(2), h.div_ceil(2));
         }
         self.levels.truncate(count);
-        self.dirty = false;
+        self.stale.clear();
+        self.stale.resize(depth.blocks().len(), 0);
+        // Children beyond the viewport: they hide nothing, and nothing is before them.
+        for l in 0..count {
+            let bits = TILE_BITS * (l as u32 + 1);
+            let [columns, rows] = [width, height].map(|side| side.div_ceil(1 << bits));
+            let level = &mut self.levels[l];
+            let down = level.farthest.len() / level.across;
+            for node in 0..level.farthest.len() {
+                let (x, y) = ((node % level.across) as u32, (node / level.across) as u32);
+                if (x + 1) as usize != level.across && (y + 1) as usize != down {
+                    continue;
+                }
+                for lane in 0..LANES as u32 {
+                    if 4 * x + lane % 4 >= columns || 4 * y + lane / 4 >= rows {
+                        level.farthest[node][lane as usize] = f32::INFINITY;
+                        level.nearest[node][lane as usize] = f32::NEG_INFINITY;
+                    }
+                }
+            }
+        }
     }
 
-    /// The farthest and the nearest nearness in a tile.
+    /// The farthest and the nearest nearness of the children of a node.
     #[inline(always)]
-    pub(crate) fn tile(&self, level: usize, x: u32, y: u32) -> (f32, f32) {
+    pub(crate) fn node(&self, level: usize, x: u32, y: u32) -> (&[f32; LANES], &[f32; LANES]) {
         let l = &self.levels[level];
-        let i = y as usize * l.width + x as usize;
-        (l.farthest[i], l.nearest[i])
+        let i = y as usize * l.across + x as usize;
+        (&l.farthest[i], &l.nearest[i])
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        let level = |l: &Level| (l.farthest.capacity() + l.nearest.capacity()) * 4 + l.dirty.capacity() * 8;
-        self.levels.iter().map(level).sum()
+        let level = |l: &Level| (l.farthest.capacity() + l.nearest.capacity()) * size_of::<[f32; LANES]>();
+        self.levels.iter().map(level).sum::<usize>() + self.stale.capacity() * size_of::<u32>()
     }
 
-    /// The lowest level where a rectangle meets at most 2 × 2 tiles, and those tiles, ends
-    /// included. The rectangle is not empty.
-    #[inline(always)]
-    pub(crate) fn cover(&self, rect: &PixelRect) -> (usize, [u32; 2], [u32; 2]) {
-        let first = [rect.x0 / TILE_WIDTH, rect.y0 / TILE_HEIGHT];
-        let last = [(rect.x1 - 1) / TILE_WIDTH, (rect.y1 - 1) / TILE_HEIGHT];
-        let mut level = 0;
-        while (last[0] >> level) - (first[0] >> level) > 1 || (last[1] >> level) - (first[1] >> level) > 1 {
-            level += 1;
-        }
-        (level, first.map(|v| v >> level), last.map(|v| v >> level))
+    pub(crate) fn base(&mut self) -> Base<'_> {
+        Base { farthest: &mut self.levels[0].farthest, stale: &mut self.stale }
     }
 
-    /// A lower bound of the nearness in a rectangle: exact for its tiles if nothing was drawn
-    /// since the last [`HiZ::refresh`], and true in any case.
-    pub(crate) fn farthest(&self, rect: &PixelRect) -> f32 {
-        let (level, first, last) = self.cover(rect);
-        let mut farthest = f32::INFINITY;
-        for y in first[1]..=last[1] {
-            for x in first[0]..=last[0] {
-                farthest = farthest.min(self.tile(level, x, y).0);
-            }
-        }
-        farthest
+    /// The farthest of the tiles of every block.
+    pub(crate) fn farthest(&self) -> &[[f32; LANES]] {
+        &self.levels[0].farthest
     }
 
-    /// Notes that pixels of a rectangle, which is not empty, may have changed.
-    pub(crate) fn touch(&mut self, rect: &PixelRect) {
-        self.dirty = true;
-        let level = &mut self.levels[0];
-        let words = level.words();
-        let (x0, x1) = ((rect.x0 / TILE_WIDTH) as usize, ((rect.x1 - 1) / TILE_WIDTH) as usize);
-        for y in rect.y0 / TILE_HEIGHT..=(rect.y1 - 1) / TILE_HEIGHT {
-            let row = &mut level.dirty[y as usize * words..][..words];
-            for (word, bits) in row.iter_mut().enumerate().take(x1 / 64 + 1).skip(x0 / 64) {
-                let from = if word == x0 / 64 { x0 % 64 } else { 0 };
-                let to = if word == x1 / 64 { x1 % 64 } else { 63 };
-                *bits |= (u64::MAX >> (63 - to)) & (u64::MAX << from);
-            }
-        }
-    }
-
-    /// Brings the touched tiles up to date. O(touched tiles), and a look at one bit a tile.
+    /// Brings everything up to date. O(changed blocks), and a look at one word a block.
     pub(crate) fn refresh(&mut self, simd: SimdLevel, depth: &Depth) {
-        if !std::mem::take(&mut self.dirty) {
-            return;
-        }
-        let image = depth.image();
         let base = &mut self.levels[0];
-        let (width, words) = (base.width, base.words());
-        let fold = |row: usize, farthest: &mut [f32], nearest: &mut [f32], dirty: &[u64]| {
-            let first = row * TILE_HEIGHT as usize;
-            let rows = (image.height() as usize - first).min(TILE_HEIGHT as usize);
-            let pixels = &depth.all()[first * depth.stride()..][..rows * depth.stride()];
-            let (stride, width) = (depth.stride(), image.width() as usize);
-            simd::fold_tiles(simd, TileRow { pixels, stride, width, dirty, farthest, nearest });
+        let across = base.across;
+        let rows = |row: usize, farthest, nearest, stale: &[u32]| {
+            let blocks = &depth.blocks()[row * across..][..across];
+            simd::fold_row(simd, Row { blocks, farthest, nearest, stale });
         };
-        let least_rows = if base.touched() < SHARED_FROM { usize::MAX } else { 1 };
+        let least_rows = if self.stale.len() < SHARED_FROM { usize::MAX } else { 8 };
         (
-            base.farthest.par_chunks_mut(width),
-            base.nearest.par_chunks_mut(width),
-            base.dirty.par_chunks(words),
+            base.farthest.par_chunks_mut(across),
+            base.nearest.par_chunks_mut(across),
+            self.stale.par_chunks(across),
         )
             .into_par_iter()
             .enumerate()
             .with_min_len(least_rows)
-            .for_each(|(row, (farthest, nearest, dirty))| fold(row, farthest, nearest, dirty));
-        for level in 1..self.levels.len() {
-            let (below, above) = self.levels.split_at_mut(level);
-            fold_level(&mut below[level - 1], &mut above[0]);
-        }
-        if let Some(top) = self.levels.last_mut() {
-            top.dirty.fill(0);
-        }
-    }
-}
-
-/// Folds the touched tiles of a level into the level above, and clears their bits.
-fn fold_level(below: &mut Level, above: &mut Level) {
-    let words = below.words();
-    for word in 0..below.dirty.len() {
-        let mut bits = std::mem::take(&mut below.dirty[word]);
-        let (y, x0) = (word / words, word % words * 64);
-        while bits != 0 {
-            let x = x0 + bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            above.mark(x / 2, y / 2);
-        }
-    }
-    let words = above.words();
-    for word in 0..above.dirty.len() {
-        let mut bits = above.dirty[word];
-        let (y, x0) = (word / words, word % words * 64);
-        while bits != 0 {
-            let x = x0 + bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let (mut farthest, mut nearest) = (f32::INFINITY, f32::NEG_INFINITY);
-            for cy in 2 * y..(2 * y + 2).min(below.height) {
-                for cx in 2 * x..(2 * x + 2).min(below.width) {
-                    farthest = farthest.min(below.farthest[cy * below.width + cx]);
-                    nearest = nearest.max(below.nearest[cy * below.width + cx]);
+            .for_each(|(row, (farthest, nearest, stale))| rows(row, farthest, nearest, stale));
+        for (block, stale) in self.stale.iter_mut().enumerate() {
+            if std::mem::take(stale) & STALE == 0 {
+                continue;
+            }
+            let (mut x, mut y) = ((block % across) as u32, (block / across) as u32);
+            for level in 1..self.levels.len() {
+                let (below, above) = self.levels.split_at_mut(level);
+                let (below, above) = (&below[level - 1], &mut above[0]);
+                let node = y as usize * below.across + x as usize;
+                let far = below.farthest[node].iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
+                let near =
+                    below.nearest[node].iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
+                let lane = ((y & 3) << 2 | (x & 3)) as usize;
+                (x, y) = (x >> TILE_BITS, y >> TILE_BITS);
+                let node = y as usize * above.across + x as usize;
+                let unchanged = above.farthest[node][lane] == far && above.nearest[node][lane] == near;
+                (above.farthest[node][lane], above.nearest[node][lane]) = (far, near);
+                if unchanged {
+                    break;
                 }
             }
-            above.farthest[y * above.width + x] = farthest;
-            above.nearest[y * above.width + x] = nearest;
         }
     }
 }
 
-/// A row of level-0 tiles and the pixels under it.
-pub(crate) struct TileRow<'a> {
-    pixels: &'a [f32],
-    stride: usize,
-    /// Pixels of a row that count; the rest is padding.
-    width: usize,
-    dirty: &'a [u64],
-    farthest: &'a mut [f32],
-    nearest: &'a mut [f32],
+/// A row of blocks and its nodes.
+pub(crate) struct Row<'a> {
+    blocks: &'a [Block],
+    farthest: &'a mut [[f32; LANES]],
+    nearest: &'a mut [[f32; LANES]],
+    stale: &'a [u32],
 }
 
-/// Folds the pixels of the touched tiles of a row.
+/// Folds the pixels of the blocks that changed.
 #[inline(always)]
-pub(crate) fn fold_tiles(row: TileRow<'_>) {
-    for (word, &bits) in row.dirty.iter().enumerate() {
-        let mut bits = bits;
-        while bits != 0 {
-            let tile = word * 64 + bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let mut low = [f32::INFINITY; LANES];
-            let mut high = [f32::NEG_INFINITY; LANES];
-            for pixels in row.pixels.chunks_exact(row.stride) {
-                let Some(block) = pixels[tile * LANES..].first_chunk::<LANES>() else { continue };
-                for i in 0..LANES {
-                    low[i] = if block[i] < low[i] { block[i] } else { low[i] };
-                    high[i] = if block[i] > high[i] { block[i] } else { high[i] };
-                }
-            }
-            let columns = (row.width - tile * LANES).min(LANES);
-            row.farthest[tile] = low[..columns].iter().fold(f32::INFINITY, |a, &b| a.min(b));
-            row.nearest[tile] = high[..columns].iter().fold(f32::NEG_INFINITY, |a, &b| a.max(b));
+pub(crate) fn fold_row<I: Isa>(row: Row<'_>) {
+    for (block, pixels) in row.blocks.iter().enumerate() {
+        if row.stale[block] & STALE == 0 {
+            continue;
         }
+        row.farthest[block] = I::store_f(I::least(&pixels.0));
+        let nearest = I::greatest(&pixels.0);
+        // Pixels beyond the viewport are infinitely near: they must not count.
+        if I::gt_f(nearest, I::splat_f(f32::MAX)) == 0 {
+            row.nearest[block] = I::store_f(nearest);
+            continue;
+        }
+        let seen = pixels.0.map(|tile| tile.map(|n| if n == f32::INFINITY { f32::NEG_INFINITY } else { n }));
+        row.nearest[block] = I::store_f(I::greatest(&seen));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::raster::{Id, Sink};
+    use super::super::layout::{BLOCK, within};
+    use super::super::sink::{Id, Sink};
     use super::*;
+    use crate::geom::PixelRect;
     use rand::RngExt;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
 
     const SIZES: [(u32, u32); 8] =
-        [(1, 1), (1, 33), (33, 1), (16, 8), (17, 9), (17, 3), (160, 90), (1023, 767)];
+        [(1, 1), (1, 33), (33, 1), (16, 16), (17, 9), (65, 3), (160, 90), (1023, 767)];
 
-    /// The first tile of any level that does not hold the extremes of its pixels.
-    fn wrong_tile(hi_z: &HiZ, depth: &Depth) -> Option<(usize, u32, u32)> {
+    /// The first node and child, of any level, that does not hold the extremes of its pixels.
+    fn wrong_child(hi_z: &HiZ, depth: &Depth) -> Option<(usize, usize, usize)> {
         let (width, height) = (depth.image().width(), depth.image().height());
         for (l, level) in hi_z.levels.iter().enumerate() {
-            for y in 0..level.height as u32 {
-                for x in 0..level.width as u32 {
+            let side = 1 << (TILE_BITS * (l as u32 + 1));
+            for node in 0..level.farthest.len() {
+                for lane in 0..LANES {
+                    let x = (4 * (node % level.across) + lane % 4) as u32 * side;
+                    let y = (4 * (node / level.across) + lane / 4) as u32 * side;
                     let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-                    for row in (y * TILE_HEIGHT) << l..(((y + 1) * TILE_HEIGHT) << l).min(height) {
-                        let columns = ((x * TILE_WIDTH) << l) as usize
-                            ..(((x + 1) * TILE_WIDTH) << l).min(width) as usize;
-                        for &n in &depth.image().row(row)[columns] {
+                    for y in y..(y + side).min(height) {
+                        for x in x..(x + side).min(width) {
+                            let n = depth.image().at(x, y);
                             (low, high) = (low.min(n), high.max(n));
                         }
                     }
-                    if hi_z.tile(l, x, y) != (low, high) {
-                        return Some((l, x, y));
+                    if (level.farthest[node][lane], level.nearest[node][lane]) != (low, high) {
+                        return Some((l, node, lane));
                     }
                 }
             }
@@ -274,22 +217,31 @@ mod tests {
         None
     }
 
-    fn scatter(depth: &mut Depth, dice: &mut ChaCha8Rng, rect: PixelRect) {
-        let [mut sink] = depth.sinks::<1>(depth.image().height() as usize);
+    fn scatter(depth: &mut Depth, hi_z: &mut HiZ, dice: &mut ChaCha8Rng, rect: PixelRect) {
+        let mut sinks: Vec<_> = depth.sinks(hi_z).collect();
         for _ in 0..rect.area().min(2000) {
             let (x, y) = (dice.random_range(rect.x0..rect.x1), dice.random_range(rect.y0..rect.y1));
-            sink.sample(y as i32, x as i32, dice.random_range(0.0..1.0), Id::default());
+            let sink = sinks.iter_mut().find(|sink| y as i32 <= sink.rows().last).expect("a band");
+            let block = sink.rows().block(x as i32, y as i32);
+            let (tile, lane) = within(x, y);
+            let at = (block * LANES + tile) * LANES + lane;
+            sink.sample(at, dice.random_range(0.0..1.0), Id::default());
         }
     }
 
+    fn cleared(width: u32, height: u32) -> (Depth, HiZ) {
+        let (mut depth, mut hi_z) = (Depth::default(), HiZ::default());
+        depth.reset(width, height, 0.0);
+        hi_z.reset(&depth, 0.0);
+        (depth, hi_z)
+    }
+
     #[test]
-    fn tiles_hold_the_extremes_of_their_pixels_at_odd_sizes() {
+    fn nodes_hold_the_extremes_of_their_pixels_at_odd_sizes() {
         let mut dice = ChaCha8Rng::seed_from_u64(1);
         for (width, height) in SIZES {
-            let (mut depth, mut hi_z) = (Depth::default(), HiZ::default());
-            depth.reset(width, height, 0.0);
-            hi_z.reset(width, height, 0.0);
-            for simd in [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Avx512] {
+            let (mut depth, mut hi_z) = cleared(width, height);
+            for simd in SimdLevel::ALL {
                 let (x0, y0) = (dice.random_range(0..width), dice.random_range(0..height));
                 let rect = PixelRect {
                     x0,
@@ -298,45 +250,23 @@ mod tests {
                     y1: dice.random_range(y0..height) + 1,
                 };
                 for rect in [rect, PixelRect { x0: width - 1, y0: height - 1, x1: width, y1: height }] {
-                    scatter(&mut depth, &mut dice, rect);
-                    hi_z.touch(&rect);
+                    scatter(&mut depth, &mut hi_z, &mut dice, rect);
                     hi_z.refresh(simd, &depth);
-                    assert_eq!(wrong_tile(&hi_z, &depth), None, "{width}×{height}");
+                    assert_eq!(wrong_child(&hi_z, &depth), None, "{width}×{height}");
                 }
             }
-            let top = hi_z.levels.last().expect("a level");
-            assert_eq!((top.width, top.height), (1, 1));
+            assert_eq!(hi_z.levels.last().expect("a level").farthest.len(), 1);
+            assert!(BLOCK as u32 * 4_u32.pow(hi_z.levels.len() as u32 - 1) >= width.max(height));
         }
     }
 
     #[test]
-    fn a_tile_that_was_not_refreshed_is_found() {
+    fn a_block_that_was_not_refreshed_is_found() {
         let mut dice = ChaCha8Rng::seed_from_u64(2);
-        let (mut depth, mut hi_z) = (Depth::default(), HiZ::default());
-        depth.reset(100, 60, 0.0);
-        hi_z.reset(100, 60, 0.0);
-        scatter(&mut depth, &mut dice, PixelRect { x0: 90, y0: 50, x1: 100, y1: 60 });
-        hi_z.refresh(SimdLevel::Scalar, &depth);
-        assert!(wrong_tile(&hi_z, &depth).is_some());
-    }
-
-    #[test]
-    fn a_rectangle_meets_at_most_four_tiles_of_the_level_found() {
-        let mut dice = ChaCha8Rng::seed_from_u64(3);
-        for (width, height) in SIZES {
-            let mut hi_z = HiZ::default();
-            hi_z.reset(width, height, 0.0);
-            for _ in 0..200 {
-                let (x0, y0) = (dice.random_range(0..width), dice.random_range(0..height));
-                let (x1, y1) = (dice.random_range(x0..width) + 1, dice.random_range(y0..height) + 1);
-                let (level, first, last) = hi_z.cover(&PixelRect { x0, y0, x1, y1 });
-                assert!(last[0] - first[0] <= 1 && last[1] - first[1] <= 1);
-                let (w, h) = (TILE_WIDTH << level, TILE_HEIGHT << level);
-                assert!(first[0] * w <= x0 && x1 <= (last[0] + 1) * w);
-                assert!(first[1] * h <= y0 && y1 <= (last[1] + 1) * h);
-                assert!((last[0] as usize) < hi_z.levels[level].width);
-                assert!((last[1] as usize) < hi_z.levels[level].height);
-            }
-        }
+        let (mut depth, mut hi_z) = cleared(100, 60);
+        scatter(&mut depth, &mut hi_z, &mut dice, PixelRect { x0: 90, y0: 50, x1: 100, y1: 60 });
+        assert!(wrong_child(&hi_z, &depth).is_some());
+        hi_z.refresh(SimdLevel::Portable, &depth);
+        assert!(wrong_child(&hi_z, &depth).is_none());
     }
 }

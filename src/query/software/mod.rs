@@ -3,28 +3,31 @@
 //! | file | |
 //! |---|---|
 //! | `pass` | what the app's closure records |
-//! | `instance` | a draw call against the view |
+//! | `bands` | who does what, in which order, on which thread |
+//! | `footprint` | a draw call, or a part of one, against the view |
 //! | `vertex`, `clip` | object space to snapped screen coordinates |
-//! | `bin`, `setup`, `raster` | triangles to samples |
-//! | `waves` | who does what, in which order, on which thread |
-//! | `depth`, `hi_z` | what is kept |
+//! | `setup`, `raster`, `large` | triangles to samples |
+//! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
 //! | `count` | answers to questions |
 //! | `visibility` | who owns each pixel of a finished frame |
-//! | `simd` | the kernels for each instruction set |
+//! | `isa`, `simd` | sixteen lanes, for each instruction set |
 
-mod bin;
+mod bands;
 mod clip;
 mod count;
 mod depth;
+mod footprint;
 mod hi_z;
-mod instance;
+mod isa;
+mod large;
+mod layout;
 mod pass;
 mod raster;
 mod setup;
 mod simd;
+mod sink;
 mod vertex;
 mod visibility;
-mod waves;
 
 use std::ops::Range;
 
@@ -38,11 +41,11 @@ pub use visibility::VisibilityImage;
 use super::{Answer, QueryBackend, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
+pub(crate) use visibility::Snapshot;
+
+use bands::Bands;
 use depth::Depth;
 use hi_z::HiZ;
-use instance::Footprint;
-use vertex::Screen;
-use waves::{MOST_BANDS, Waves};
 
 /// Counters since [`QueryBackend::begin`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,7 +74,7 @@ pub struct SoftwareQueries {
     depth: Depth,
     hi_z: HiZ,
     pass: SoftwarePass,
-    waves: Waves,
+    bands: Bands,
     asked: Vec<Asked>,
     proxies: Vec<Proxy>,
     /// One for each proxy of an answered question.
@@ -114,7 +117,7 @@ impl SoftwareQueries {
             depth: Depth::default(),
             hi_z: HiZ::default(),
             pass: SoftwarePass::default(),
-            waves: Waves::default(),
+            bands: Bands::default(),
             asked: Vec::new(),
             proxies: Vec::new(),
             found: Vec::new(),
@@ -133,11 +136,6 @@ impl SoftwareQueries {
         self.depth.image()
     }
 
-    /// The depth buffer as it lies in memory, padding included.
-    pub(crate) fn stored(&self) -> &[f32] {
-        self.depth.all()
-    }
-
     /// Counters since the frame began.
     pub fn stats(&self) -> SoftwareStats {
         self.stats
@@ -148,38 +146,9 @@ impl SoftwareQueries {
         self.depth.bytes() + self.hi_z.bytes()
     }
 
-    /// Draws calls that are sorted from near to far, in growing batches: after each the hierarchy
-    /// is brought up to date, so that hidden calls of the next are skipped. The depth is the same.
-    pub(crate) fn rasterise_sorted(&mut self, view: &View, calls: &[DrawCall]) {
-        let (mut first, mut count) = (0, 64);
-        while first < calls.len() {
-            let end = (first + count).min(calls.len());
-            self.rasterise(view, &calls[first..end]);
-            self.hi_z.refresh(self.simd, &self.depth);
-            (first, count) = (end, 2 * count);
-        }
-    }
-
     /// Draws into the depth of the frame that has begun.
     pub(crate) fn rasterise(&mut self, view: &View, calls: &[DrawCall]) {
-        let screen = Screen::new(view);
-        let hi_z = &self.hi_z;
-        self.waves.survey(calls, |call| {
-            let mut footprint = Footprint::new(view, &screen, call);
-            // Nothing nearer than what is there: the greatest nearness stays as it is.
-            if footprint.rect.is_some_and(|rect| footprint.nearest <= hi_z.farthest(&rect)) {
-                footprint.rect = None;
-            }
-            footprint
-        });
-        for rect in self.waves.footprints().iter().filter_map(|f| f.rect.as_ref()) {
-            self.hi_z.touch(rect);
-        }
-        let height = view.viewport().height;
-        let band_rows = waves::band_rows(height);
-        let bands = (height as usize).div_ceil(band_rows);
-        let mut sinks = self.depth.sinks::<MOST_BANDS>(band_rows);
-        let work = self.waves.rasterise(self.simd, screen, calls, band_rows, &mut sinks[..bands]);
+        let work = self.bands.rasterise(self.simd, view, calls, self.depth.sinks(&mut self.hi_z));
         self.stats.calls += calls.len() as u64;
         self.stats.skipped_calls += calls.len() as u64 - work.calls;
         self.stats.triangles += work.triangles;
@@ -228,7 +197,7 @@ impl QueryBackend for SoftwareQueries {
     fn begin(&mut self, view: &View) -> Result<(), Error> {
         let (viewport, cleared) = (view.viewport(), view.depth().cleared());
         self.depth.reset(viewport.width, viewport.height, cleared);
-        self.hi_z.reset(viewport.width, viewport.height, cleared);
+        self.hi_z.reset(&self.depth, cleared);
         self.view = Some(view.clone());
         self.forget();
         self.stats = SoftwareStats::default();

@@ -1,134 +1,130 @@
-//! From corners to edge functions and depth: what a triangle needs before it is sampled.
+//! From corners to edge functions and depth: what sixteen triangles need before they are sampled.
 //!
-//! Depth is interpolated from the edge functions, rounded once to f32:
-//! `n0 + (λ1·(n1 - n0) + λ2·(n2 - n0))`, `λ = edge / area`, clamped to the triangle's own range.
-//! Each λ lies in [0, 1] and errs by less than 2 ulps, each difference and product by half an ulp
-//! of at most the largest |nearness|, so the sum errs by a few ulps of that. All paths share
-//! [`Shading::nearness`]; the same triangle yields the same bits in each of them.
+//! Coverage is decided by edge functions in integers: a sample (a pixel's centre) is covered where
+//! all three are positive, or zero on a top or left edge. Depth is interpolated from the edge
+//! functions, rounded once to f32: `n0 + (λ1·(n1 - n0) + λ2·(n2 - n0))`, `λ = edge / area`, clamped
+//! to the triangle's own range. Each λ lies in [0, 1] and errs by less than 2 ulps, each
+//! difference and product by half an ulp of at most the largest |nearness|, so the sum errs by a
+//! few ulps of that. All paths share [`Shading::nearness`]; the same triangle yields the same bits
+//! in each of them.
 
+use super::isa::Isa;
 use super::vertex::{SUBPIXEL_BITS, SUBPIXELS};
 
-/// The longest side of a triangle's bounding box, in subpixels, that the i32 paths take.
+/// The longest side of a triangle's bounding box, in subpixels, that is rasterised in i32: an edge
+/// function inside the bounding box is at most its area, 2³⁰, and a block of pixels reaches
+/// less than 2²⁸ beyond.
 pub(crate) const SMALL_EXTENT: i32 = 128 << SUBPIXEL_BITS;
 
-/// A triangle of at most [`SMALL_EXTENT`] a side, wound clockwise, ready to be sampled.
+/// Sixteen triangles on the screen, by snapped corners.
 #[derive(Clone, Copy)]
-pub(crate) struct Small {
-    /// The edge function opposite to each corner, at the first sample.
-    pub(crate) edge: [i32; 3],
-    /// Its change from column to column.
-    pub(crate) step_x: [i32; 3],
-    /// Its change from row to row.
-    pub(crate) step_y: [i32; 3],
-    /// See [`bias`].
-    pub(crate) bias: [i32; 3],
-    /// Nearness at the corners.
-    pub(crate) nearness: [f32; 3],
-    /// Twice the area, in square subpixels; what the edge functions add up to.
-    pub(crate) area: i32,
+pub(crate) struct Corners<I: Isa> {
+    pub(crate) x: [I::I; 3],
+    pub(crate) y: [I::I; 3],
+    pub(crate) nearness: [I::F; 3],
 }
 
-impl Small {
-    /// Sets up for the sample in a column and row. Nothing overflows for a triangle of
-    /// [`SMALL_EXTENT`] whose bounding box holds the sample; anything else yields nonsense, which
-    /// lanes without a triangle may.
+/// Sixteen triangles of at most [`SMALL_EXTENT`] a side, wound clockwise, ready to be sampled.
+pub(crate) struct Setup<I: Isa> {
+    /// The edge function opposite to each corner, at the first sample.
+    pub(crate) edge: [I::I; 3],
+    /// Its change from column to column.
+    pub(crate) step_x: [I::I; 3],
+    /// Its change from row to row.
+    pub(crate) step_y: [I::I; 3],
+    /// Covered is what is greater: -1 for a top or left edge, 0 for the others.
+    pub(crate) limit: [I::I; 3],
+    pub(crate) shading: Shading<I>,
+}
+
+impl<I: Isa> Setup<I> {
+    /// Sets up for the sample in a column and row of each triangle, at most 15 before its bounding
+    /// box. Nothing overflows; lanes with anything else yield nonsense.
     #[inline(always)]
-    pub(crate) fn new(x: [i32; 3], y: [i32; 3], n: [f32; 3], column: i32, row: i32) -> Self {
-        let area = cross(x[1] - x[0], y[1] - y[0], x[2] - x[0], y[2] - y[0]);
-        let turned = area < 0;
-        let (x1, x2) = if turned { (x[2], x[1]) } else { (x[1], x[2]) };
-        let (y1, y2) = if turned { (y[2], y[1]) } else { (y[1], y[2]) };
-        let (n1, n2) = if turned { (n[2], n[1]) } else { (n[1], n[2]) };
-        let (sx, sy) = (centre(column), centre(row));
-        let dx = [x2 - x1, x[0] - x2, x1 - x[0]];
-        let dy = [y2 - y1, y[0] - y2, y1 - y[0]];
-        Self {
-            edge: [
-                cross(dx[0], dy[0], sx - x1, sy - y1),
-                cross(dx[1], dy[1], sx - x2, sy - y2),
-                cross(dx[2], dy[2], sx - x[0], sy - y[0]),
-            ],
-            step_x: dy.map(|d| -(d << SUBPIXEL_BITS)),
-            step_y: dx.map(|d| d << SUBPIXEL_BITS),
-            bias: [bias(dx[0], dy[0]), bias(dx[1], dy[1]), bias(dx[2], dy[2])],
-            nearness: [n[0], n1, n2],
-            area: area.wrapping_abs(),
+    pub(crate) fn new(corners: &Corners<I>, column: I::I, row: I::I) -> Self {
+        let Corners { x, y, nearness: n } = *corners;
+        let area = cross::<I>(I::sub(x[1], x[0]), I::sub(y[1], y[0]), I::sub(x[2], x[0]), I::sub(y[2], y[0]));
+        let zero = I::splat(0);
+        let turned = I::gt(zero, area);
+        let x = [x[0], I::blend(turned, x[1], x[2]), I::blend(turned, x[2], x[1])];
+        let y = [y[0], I::blend(turned, y[1], y[2]), I::blend(turned, y[2], y[1])];
+        let n = [n[0], I::blend_f(turned, n[1], n[2]), I::blend_f(turned, n[2], n[1])];
+        let (sx, sy) = (centre::<I>(column), centre::<I>(row));
+        let dx = [I::sub(x[2], x[1]), I::sub(x[0], x[2]), I::sub(x[1], x[0])];
+        let dy = [I::sub(y[2], y[1]), I::sub(y[0], y[2]), I::sub(y[1], y[0])];
+        // The edges run along the border of a triangle of positive area, clockwise with y down: a
+        // top edge runs right, a left edge up.
+        let (mut edge, mut limit) = ([zero; 3], [zero; 3]);
+        let (mut step_x, mut step_y) = ([zero; 3], [zero; 3]);
+        for k in 0..3 {
+            let from = (k + 1) % 3;
+            edge[k] = cross::<I>(dx[k], dy[k], I::sub(sx, x[from]), I::sub(sy, y[from]));
+            let level = I::gt(I::splat(1), dy[k]) & I::gt(dy[k], I::splat(-1));
+            let covers = I::gt(zero, dy[k]) | (level & I::gt(dx[k], zero));
+            limit[k] = I::blend(covers, zero, I::splat(-1));
+            step_x[k] = I::sub(zero, I::shift_left::<SUBPIXEL_BITS>(dy[k]));
+            step_y[k] = I::shift_left::<SUBPIXEL_BITS>(dx[k]);
         }
+        let area = I::max(area, I::sub(zero, area));
+        let shading = Shading::new(n, I::to_f(area));
+        Self { edge, step_x, step_y, limit, shading }
     }
 }
 
 #[inline(always)]
-fn cross(ax: i32, ay: i32, bx: i32, by: i32) -> i32 {
-    ax.wrapping_mul(by).wrapping_sub(ay.wrapping_mul(bx))
+fn cross<I: Isa>(ax: I::I, ay: I::I, bx: I::I, by: I::I) -> I::I {
+    I::sub(I::mul(ax, by), I::mul(ay, bx))
 }
 
 /// The part of depth interpolation that is constant over a triangle.
 #[derive(Clone, Copy)]
-pub(crate) struct Shading {
-    pub(crate) inverse_area: f32,
-    pub(crate) base: f32,
-    pub(crate) along_1: f32,
-    pub(crate) along_2: f32,
-    pub(crate) least: f32,
-    pub(crate) greatest: f32,
+pub(crate) struct Shading<I: Isa> {
+    pub(crate) inverse_area: I::F,
+    pub(crate) base: I::F,
+    pub(crate) along_1: I::F,
+    pub(crate) along_2: I::F,
+    pub(crate) least: I::F,
+    pub(crate) greatest: I::F,
 }
 
-impl Shading {
+impl<I: Isa> Shading<I> {
+    /// From the nearness at the corners and twice the area.
     #[inline(always)]
-    pub(crate) fn new(n: [f32; 3], area: f32) -> Self {
+    pub(crate) fn new(n: [I::F; 3], area: I::F) -> Self {
         Self {
-            inverse_area: 1.0 / area,
+            inverse_area: I::div_f(I::splat_f(1.0), area),
             base: n[0],
-            along_1: n[1] - n[0],
-            along_2: n[2] - n[0],
-            least: least(least(n[0], n[1]), n[2]),
-            greatest: greatest(greatest(n[0], n[1]), n[2]),
+            along_1: I::sub_f(n[1], n[0]),
+            along_2: I::sub_f(n[2], n[0]),
+            least: I::min_f(I::min_f(n[0], n[1]), n[2]),
+            greatest: I::max_f(I::max_f(n[0], n[1]), n[2]),
         }
     }
 
     /// The nearness where the edge functions opposite to corners 1 and 2 have these values.
     #[inline(always)]
-    pub(crate) fn nearness(&self, edge_1: f32, edge_2: f32) -> f32 {
-        let l1 = edge_1 * self.inverse_area;
-        let l2 = edge_2 * self.inverse_area;
-        let n = self.base + (l1 * self.along_1 + l2 * self.along_2);
-        least(greatest(n, self.least), self.greatest)
+    pub(crate) fn nearness(&self, edge_1: I::F, edge_2: I::F) -> I::F {
+        let l1 = I::mul_f(edge_1, self.inverse_area);
+        let l2 = I::mul_f(edge_2, self.inverse_area);
+        let n = I::add_f(self.base, I::add_f(I::mul_f(l1, self.along_1), I::mul_f(l2, self.along_2)));
+        I::min_f(I::max_f(n, self.least), self.greatest)
     }
 }
 
-// One instruction each, unlike `f32::min` and `max`, which care for NaN.
+/// The first sample column (or row) at or after coordinates in subpixels.
 #[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+pub(crate) fn first_samples<I: Isa>(v: I::I) -> I::I {
+    I::shift_right::<SUBPIXEL_BITS>(I::add(v, I::splat(SUBPIXELS / 2 - 1)))
 }
 
+/// The last sample column (or row) at or before coordinates in subpixels.
 #[inline(always)]
-fn greatest(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+pub(crate) fn last_samples<I: Isa>(v: I::I) -> I::I {
+    I::shift_right::<SUBPIXEL_BITS>(I::sub(v, I::splat(SUBPIXELS / 2)))
 }
 
-/// The first sample column (or row) at or after a coordinate in subpixels.
+/// The coordinates of samples in subpixels.
 #[inline(always)]
-pub(crate) fn first_sample(v: i32) -> i32 {
-    v.wrapping_add(SUBPIXELS / 2 - 1) >> SUBPIXEL_BITS
-}
-
-/// The last sample column (or row) at or before a coordinate in subpixels.
-#[inline(always)]
-pub(crate) fn last_sample(v: i32) -> i32 {
-    v.wrapping_sub(SUBPIXELS / 2) >> SUBPIXEL_BITS
-}
-
-/// A sample's coordinate in subpixels.
-#[inline(always)]
-pub(crate) fn centre(sample: i32) -> i32 {
-    (sample << SUBPIXEL_BITS) + SUBPIXELS / 2
-}
-
-/// What an edge function is lowered by so that `≥ 0` means covered: nothing for a top or left
-/// edge, one for the others. `dx`, `dy` run along the edge of a triangle of positive area, which
-/// is clockwise with y down: a top edge runs right, a left edge up.
-#[inline(always)]
-pub(crate) fn bias(dx: i32, dy: i32) -> i32 {
-    if dy < 0 || (dy == 0 && dx > 0) { 0 } else { -1 }
+fn centre<I: Isa>(sample: I::I) -> I::I {
+    I::add(I::shift_left::<SUBPIXEL_BITS>(sample), I::splat(SUBPIXELS / 2))
 }

@@ -5,7 +5,9 @@
 
 use glam::{Affine3A, DMat4, DVec4, Mat4, Vec3, Vec4};
 
-use crate::geom::{DepthDirection, View};
+use super::isa::{ALL, Isa, LANES, Mask, affine};
+use crate::geom::{DepthDirection, PixelRect, View};
+use crate::scene::meshlets::MOST_VERTICES;
 
 /// Subpixel steps a pixel, as a power of two.
 pub(crate) const SUBPIXEL_BITS: u32 = 8;
@@ -71,6 +73,11 @@ impl Screen {
         }
     }
 
+    /// All pixels.
+    pub(crate) fn whole(&self) -> PixelRect {
+        PixelRect { x0: 0, y0: 0, x1: self.width as u32, y1: self.height as u32 }
+    }
+
     /// A clip-space point on the screen.
     #[inline(always)]
     #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "a comparison with NaN must set the bit")]
@@ -120,19 +127,84 @@ pub(crate) fn clip_from_object(clip_from_world: &DMat4, world_from_object: &Affi
     )
 }
 
-/// Transforms positions into `out`, which is as long.
-#[inline(always)]
-pub(crate) fn transform(screen: &Screen, clip_from_object: &Mat4, positions: &[Vec3], out: &mut [Vertex]) {
-    for (vertex, &position) in out.iter_mut().zip(positions) {
-        let clip = clip_position(clip_from_object, position);
-        *vertex = screen.project(clip.x, clip.y, clip.z, clip.w);
+/// The vertices of a part of a mesh on the screen, where they need no clipping.
+pub(crate) struct Projected {
+    pub(crate) x: [i32; MOST_VERTICES],
+    pub(crate) y: [i32; MOST_VERTICES],
+    pub(crate) nearness: [f32; MOST_VERTICES],
+    /// A bit for each vertex that needs clipping, by each of the codes.
+    pub(crate) beyond: [u64; 3],
+}
+
+impl Projected {
+    pub(crate) const EMPTY: Self = Self {
+        x: [0; MOST_VERTICES],
+        y: [0; MOST_VERTICES],
+        nearness: [0.0; MOST_VERTICES],
+        beyond: [0; 3],
+    };
+
+    /// The vertices that need clipping.
+    #[inline(always)]
+    pub(crate) fn clipped(&self) -> u64 {
+        self.beyond[0] | self.beyond[1] | self.beyond[2]
+    }
+
+    /// Takes the image of some positions, an axis after the other: what [`clip_position`] and
+    /// [`Screen::project`] make of each, operation by operation.
+    #[inline(always)]
+    pub(crate) fn transform<I: Isa>(&mut self, screen: &Screen, m: &Mat4, positions: [&[[f32; LANES]]; 3]) {
+        let [cx, cy, cz, cw] = [m.x_axis, m.y_axis, m.z_axis, m.w_axis];
+        self.beyond = [0; 3];
+        let half_width = I::splat(screen.width * (SUBPIXELS / 2));
+        let half_height = I::splat(screen.height * (SUBPIXELS / 2));
+        let zero = I::splat_f(0.0);
+        let (xs, _) = self.x.as_chunks_mut::<LANES>();
+        let (ys, _) = self.y.as_chunks_mut::<LANES>();
+        let (ns, _) = self.nearness.as_chunks_mut::<LANES>();
+        for i in 0..positions[0].len().min(xs.len()) {
+            let p = [
+                I::load_f(&positions[0][i]),
+                I::load_f(&positions[1][i]),
+                I::load_f(&positions[2][i]),
+            ];
+            let x = affine::<I>([cx.x, cy.x, cz.x, cw.x], p);
+            let y = affine::<I>([cx.y, cy.y, cz.y, cw.y], p);
+            let z = affine::<I>([cx.z, cy.z, cz.z, cw.z], p);
+            let w = affine::<I>([cx.w, cy.w, cz.w, cw.w], p);
+            let inverse = I::div_f(I::splat_f(1.0), w);
+            let sx = I::mul_f(I::mul_f(x, inverse), I::splat_f(screen.scale_x));
+            let sy = I::mul_f(I::mul_f(y, inverse), I::splat_f(screen.scale_y));
+            let guarded = in_guard_band::<I>(sx) & in_guard_band::<I>(sy);
+            let good = [I::ge_f(I::sub_f(w, z), zero), I::ge_f(z, zero), guarded];
+            for k in 0..3 {
+                self.beyond[k] |= u64::from(ALL & !good[k]) << (i * LANES);
+            }
+            xs[i] = I::store(I::add(snap_lanes::<I>(sx), half_width));
+            ys[i] = I::store(I::add(snap_lanes::<I>(sy), half_height));
+            ns[i] = I::store_f(I::mul_f(I::splat_f(screen.sign), I::div_f(z, w)));
+        }
     }
 }
+
+/// 1.5·2²³.
+const MAGIC: f32 = 12_582_912.0;
 
 /// The nearest integer, ties to even, for |v| ≤ 2²²: adding 1.5·2²³ leaves the integer in the low
 /// bits of the mantissa. Without a float-to-integer conversion, which saturates slowly in Rust.
 #[inline(always)]
 fn snap(v: f32) -> i32 {
-    const MAGIC: f32 = 12_582_912.0;
     ((v + MAGIC).to_bits() as i32).wrapping_sub(MAGIC.to_bits() as i32)
+}
+
+/// Where coordinates lie in the guard band; nowhere for what is not a number.
+#[inline(always)]
+fn in_guard_band<I: Isa>(v: I::F) -> Mask {
+    I::ge_f(I::splat_f(GUARD_LIMIT), v) & I::ge_f(v, I::splat_f(-GUARD_LIMIT))
+}
+
+/// [`snap`] of sixteen.
+#[inline(always)]
+pub(crate) fn snap_lanes<I: Isa>(v: I::F) -> I::I {
+    I::sub(I::bits(I::add_f(v, I::splat_f(MAGIC))), I::splat(MAGIC.to_bits() as i32))
 }

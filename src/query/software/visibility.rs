@@ -3,13 +3,12 @@
 //! bits, a sample is in sight exactly if its nearness is not below the stored one.
 
 use super::SoftwareQueries;
-use super::instance::Footprint;
+use super::depth::each_block;
+use super::isa::{Isa, LANES, Mask};
+use super::layout::{BLOCK_BITS, BLOCK_PIXELS, Block, within};
 use super::pass::DrawCall;
-use super::raster::{ALL_LANES, HALF, Id, LANES, Rows, Sink};
-use super::simd::Isa;
-use super::vertex::Screen;
-use super::waves::{self, MOST_BANDS};
-use crate::geom::View;
+use super::sink::{Id, Rows, Sink};
+use crate::geom::{PixelRect, View};
 
 /// What each pixel shows, row after row from the upper left corner.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,95 +24,108 @@ pub struct VisibilityImage {
     pub triangle: Vec<u32>,
     /// Its nearness.
     pub nearness: Vec<f32>,
+    /// Call and triangle of each pixel, as the depth buffer lies.
+    owners: Vec<Owner>,
     /// A bit a draw call, a row of words a band.
     seen: Vec<u64>,
 }
 
+/// A draw call and a triangle of it.
+type Owner = (u32, u32);
+
 impl VisibilityImage {
     /// In [`VisibilityImage::call`]: a pixel that nothing was drawn on.
     pub const NOTHING: u32 = u32::MAX;
+}
 
-    fn reset(&mut self, width: u32, height: u32) {
-        (self.width, self.height) = (width, height);
-        let pixels = width as usize * height as usize;
-        for ids in [&mut self.call, &mut self.triangle] {
-            ids.clear();
-            ids.resize(pixels, Self::NOTHING);
-        }
-        self.nearness.clear();
-    }
+/// What is drawn later is tested against: the depth of a moment, and the farthest of its tiles.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Snapshot {
+    blocks: Vec<Block>,
+    farthest: Vec<[f32; LANES]>,
 }
 
 impl SoftwareQueries {
+    /// Takes the depth as it is now.
+    pub(crate) fn keep(&mut self, snapshot: &mut Snapshot) {
+        self.hi_z.refresh(self.simd, &self.depth);
+        snapshot.blocks.clear();
+        snapshot.blocks.extend_from_slice(self.depth.blocks());
+        snapshot.farthest.clear();
+        snapshot.farthest.extend_from_slice(self.hi_z.farthest());
+    }
+
     /// Finds out what `calls`, all that the frame has drawn, show of themselves. `opaque` is what
-    /// they are tested against, laid out like the depth buffer; the image is that of the frame's
-    /// own depth. Returns a bit a draw call: whether it owns a sample.
+    /// they are tested against; the image is that of the frame's own depth. Returns a bit a draw
+    /// call: whether it owns a sample.
     pub(crate) fn look<'a>(
         &mut self,
         view: &View,
         calls: &[DrawCall],
-        opaque: &[f32],
+        opaque: &Snapshot,
         image: &'a mut VisibilityImage,
     ) -> &'a [u64] {
-        let (screen, height) = (Screen::new(view), view.viewport().height);
-        let hi_z = &self.hi_z;
-        self.waves.survey(calls, |call| {
-            let mut footprint = Footprint::new(view, &screen, call);
-            // Every sample is farther than what is there. What is equally far counts as seen.
-            if footprint.rect.is_some_and(|rect| footprint.nearest < hi_z.farthest(&rect)) {
-                footprint.rect = None;
-            }
-            footprint
-        });
-        image.reset(view.viewport().width, height);
-        for y in 0..height {
-            image.nearness.extend_from_slice(self.depth.image().row(y));
-        }
-        let band_rows = waves::band_rows(height);
-        let bands = (height as usize).div_ceil(band_rows);
+        let many = self.depth.blocks_a_band();
         let words = calls.len().div_ceil(64).max(1);
+        image.owners.clear();
+        image.owners.resize(
+            self.depth.blocks().len() * BLOCK_PIXELS,
+            (VisibilityImage::NOTHING, VisibilityImage::NOTHING),
+        );
         image.seen.clear();
-        image.seen.resize(words * bands, 0);
-        let (width, stride) = (image.width as usize, self.depth.stride());
-        let mut call = image.call.chunks_mut(width * band_rows);
-        let mut triangle = image.triangle.chunks_mut(width * band_rows);
-        let mut seen = image.seen.chunks_mut(words);
-        let mut opaque = opaque.chunks(stride * band_rows);
-        let mut depth = self.depth.all().chunks(stride * band_rows);
-        let mut sinks: [VisibilitySink<'_>; MOST_BANDS] = std::array::from_fn(|band| VisibilitySink {
-            opaque: opaque.next().unwrap_or_default(),
-            depth: depth.next().unwrap_or_default(),
-            call: call.next().unwrap_or_default(),
-            triangle: triangle.next().unwrap_or_default(),
-            seen: seen.next().unwrap_or_default(),
-            width,
-            stride,
-            rows: Rows {
-                first: (band * band_rows) as i32,
-                last: ((band + 1) * band_rows).min(height as usize) as i32 - 1,
-                last_column: width as i32 - 1,
-            },
+        image.seen.resize(words * (self.depth.rows().count() + 1), 0);
+        let (all, by_band) = image.seen.split_at_mut(words);
+        let frame = opaque.blocks.chunks(many).zip(opaque.farthest.chunks(many));
+        let marks = image.owners.chunks_mut(many * BLOCK_PIXELS).zip(by_band.chunks_mut(words));
+        let bands = frame.zip(marks).zip(self.depth.blocks().chunks(many)).zip(self.depth.rows());
+        let sinks = bands.map(|((((opaque, farthest), (owners, seen)), depth), rows)| VisibilitySink {
+            opaque,
+            farthest,
+            depth,
+            owners,
+            seen,
+            rows,
         });
-        self.waves.rasterise(self.simd, screen, calls, band_rows, &mut sinks[..bands]);
-        let (all, others) = image.seen.split_at_mut(words);
-        for band in others.chunks(words) {
+        self.bands.rasterise(self.simd, view, calls, sinks);
+        for band in by_band.chunks(words) {
             for (all, band) in all.iter_mut().zip(band) {
                 *all |= band;
             }
         }
-        all
+        self.unfold(image);
+        &image.seen[..words]
+    }
+
+    /// Fills the image's rows.
+    fn unfold(&self, image: &mut VisibilityImage) {
+        let depth = self.depth.image();
+        (image.width, image.height) = (depth.width(), depth.height());
+        image.call.clear();
+        image.triangle.clear();
+        image.nearness.clear();
+        for y in 0..image.height {
+            image.nearness.extend(depth.row(y));
+            let row = (y >> BLOCK_BITS) as usize * self.depth.across();
+            let owners = (0..image.width).map(|x| {
+                let (tile, lane) = within(x, y);
+                let block = row + (x >> BLOCK_BITS) as usize;
+                image.owners[block * BLOCK_PIXELS + tile * LANES + lane]
+            });
+            for (call, triangle) in owners {
+                image.call.push(call);
+                image.triangle.push(triangle);
+            }
+        }
     }
 }
 
 /// Looks at the samples of a band of rows.
 struct VisibilitySink<'a> {
-    opaque: &'a [f32],
-    depth: &'a [f32],
-    call: &'a mut [u32],
-    triangle: &'a mut [u32],
+    opaque: &'a [Block],
+    farthest: &'a [[f32; LANES]],
+    depth: &'a [Block],
+    owners: &'a mut [Owner],
     seen: &'a mut [u64],
-    width: usize,
-    stride: usize,
     rows: Rows,
 }
 
@@ -126,53 +138,46 @@ impl Sink for VisibilitySink<'_> {
     }
 
     #[inline(always)]
-    fn block<I: Isa>(
-        &mut self,
-        row: i32,
-        column: i32,
-        outside: &[i32; LANES],
-        nearness: &[f32; LANES],
-        id: Id,
-    ) {
-        let mut covered = I::negative(outside) ^ ALL_LANES;
+    fn hides<I: Isa>(&mut self, rect: &PixelRect, nearest: f32) -> bool {
+        let nearest = I::splat_f(nearest);
+        let (mut hidden, rows) = (true, self.rows);
+        each_block(
+            &rows,
+            rect,
+            #[inline(always)]
+            |block, tiles| {
+            hidden = tiles & self.open_tiles::<I>(block, nearest) == 0;
+            hidden
+        });
+        hidden
+    }
+
+    /// Those where not everything is nearer. What is equally far counts as seen.
+    #[inline(always)]
+    fn open_tiles<I: Isa>(&mut self, block: usize, greatest: I::F) -> Mask {
+        I::ge_f(greatest, I::load_f(&self.farthest[block]))
+    }
+
+    #[inline(always)]
+    fn tile<I: Isa>(&mut self, block: usize, tile: usize, mut covered: Mask, nearness: I::F, id: Id) {
+        let nearness = I::store_f(nearness);
         while covered != 0 {
-            let i = covered.trailing_zeros();
+            let lane = covered.trailing_zeros() as usize;
             covered &= covered - 1;
-            self.sample(row, column + i as i32, nearness[i as usize], id);
+            self.sample((block * LANES + tile) * LANES + lane, nearness[lane], id);
         }
     }
 
     #[inline(always)]
-    fn pair<I: Isa>(
-        &mut self,
-        row: i32,
-        column: i32,
-        outside: &[i32; LANES],
-        nearness: &[f32; LANES],
-        id: Id,
-    ) {
-        let mut covered = I::negative(outside) ^ ALL_LANES;
-        while covered != 0 {
-            let i = covered.trailing_zeros() as usize;
-            covered &= covered - 1;
-            self.sample(row + (i / HALF) as i32, column + (i % HALF) as i32, nearness[i], id);
-        }
-    }
-
-    #[inline(always)]
-    fn sample(&mut self, row: i32, column: i32, nearness: f32, id: Id) {
-        let row = (row - self.rows.first) as usize;
-        let stored = row * self.stride + column as usize;
-        if nearness >= self.opaque[stored] {
+    fn sample(&mut self, at: usize, nearness: f32, id: Id) {
+        let (block, tile, lane) = (at / BLOCK_PIXELS, at / LANES % LANES, at % LANES);
+        if nearness >= self.opaque[block].0[tile][lane] {
             self.seen[id.call as usize / 64] |= 1 << (id.call % 64);
         }
-        if nearness >= self.depth[stored] {
-            let pixel = row * self.width + column as usize;
-            let kept = (self.call[pixel], self.triangle[pixel]);
-            // The order of rasterisation depends on the number of threads; the least id does not.
-            if (id.call, id.triangle) < kept {
-                (self.call[pixel], self.triangle[pixel]) = (id.call, id.triangle);
-            }
+        if nearness >= self.depth[block].0[tile][lane] {
+            // The order of rasterisation is not that of the ids; the least id is always the same.
+            let owner = &mut self.owners[at];
+            *owner = (*owner).min((id.call, id.triangle));
         }
     }
 }

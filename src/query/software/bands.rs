@@ -1,0 +1,310 @@
+//! The raster pipeline: draw calls in, samples out.
+//!
+//! The screen is cut into bands of rows that fit the second-level cache. Each draw call is
+//! bounded once and listed in the bands that it may touch; then every band takes its calls in
+//! order, each by one thread: what is hidden by what the band holds already is left out, of large
+//! meshes part by part and from near to far; the rest is transformed, set up and sampled while it
+//! is in the first-level cache. Nothing is locked or passed on, and no result depends on who did
+//! what. All buffers are kept between frames.
+
+use rayon::prelude::*;
+
+use super::clip::{Fan, clip};
+use super::footprint::{Extents, Footprint, extents};
+use super::isa::{ALL, Isa, LANES, Mask, store_each};
+use super::large;
+use super::layout::BLOCK;
+use super::pass::DrawCall;
+use super::raster::{self, Ids};
+use super::setup::Corners;
+use super::simd::{self, SimdLevel};
+use super::sink::{Id, Rows, Sink};
+use super::vertex::{Projected, Screen, clip_position};
+use crate::geom::{PixelRect, View};
+use crate::scene::meshlets::Part;
+
+/// Rows of pixels a band.
+pub(crate) const BAND_ROWS: u32 = 4 * BLOCK as u32;
+/// Triangles from which bands are shared among threads. Below, waking another thread takes
+/// longer than the work.
+const SHARED_FROM: u64 = 4096;
+/// Draw calls from which they are bounded by several threads.
+const BOUNDED_TOGETHER: usize = 256;
+
+/// What every band reads.
+pub(crate) struct Frame<'a> {
+    screen: Screen,
+    calls: &'a [DrawCall],
+    footprints: &'a [Footprint],
+}
+
+/// What a run of the pipeline did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Work {
+    /// Draw calls that were not skipped.
+    pub(crate) calls: u64,
+    /// Triangles of those.
+    pub(crate) triangles: u64,
+    /// Triangles with a sample in their bounding box.
+    pub(crate) kept: u64,
+}
+
+/// The draw calls of a band, and room to work.
+#[derive(Debug, Default)]
+pub(crate) struct List {
+    calls: Vec<u32>,
+    /// Those that were not hidden.
+    drawn: Vec<u32>,
+    parts: Vec<PartInBand>,
+    kept: u64,
+}
+
+/// A part of a mesh that may touch a band.
+#[derive(Clone, Copy, Debug)]
+struct PartInBand {
+    /// Grows with distance.
+    order: u32,
+    part: u32,
+    nearest: f32,
+    rect: PixelRect,
+}
+
+/// Buffers that are reused from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct Bands {
+    footprints: Vec<Footprint>,
+    lists: Vec<List>,
+    drawn: Vec<bool>,
+}
+
+impl Bands {
+    /// Rasterises draw calls in their order, into one sink a band.
+    pub(crate) fn rasterise<S: Sink + Send>(
+        &mut self,
+        level: SimdLevel,
+        view: &View,
+        calls: &[DrawCall],
+        sinks: impl Iterator<Item = S>,
+    ) -> Work {
+        let screen = Screen::new(view);
+        self.footprints.clear();
+        let bound = |call: &DrawCall| simd::footprint(level, view, &screen, call);
+        if calls.len() < BOUNDED_TOGETHER {
+            self.footprints.extend(calls.iter().map(bound));
+        } else {
+            self.footprints.par_extend(calls.par_iter().with_min_len(64).map(bound));
+        }
+        let triangles = self.list(view, calls);
+        let frame = Frame { screen, calls, footprints: &self.footprints };
+        let bands = self.lists.iter_mut().zip(sinks).filter(|(list, _)| !list.calls.is_empty());
+        let run = |(list, mut sink): (&mut List, S)| simd::band(level, &frame, list, &mut sink);
+        if triangles < SHARED_FROM || rayon::current_num_threads() == 1 {
+            bands.for_each(run);
+        } else {
+            let bands: Vec<_> = bands.collect();
+            bands.into_par_iter().with_max_len(1).for_each(run);
+        }
+        self.sum(calls)
+    }
+
+    /// Lists the calls by bands. Returns the triangles of all.
+    fn list(&mut self, view: &View, calls: &[DrawCall]) -> u64 {
+        let bands = view.viewport().height.div_ceil(BAND_ROWS) as usize;
+        self.lists.resize_with(bands, List::default);
+        for list in &mut self.lists {
+            list.calls.clear();
+            list.drawn.clear();
+            list.kept = 0;
+        }
+        let mut triangles = 0;
+        for (index, (footprint, call)) in self.footprints.iter().zip(calls).enumerate() {
+            let Some(rect) = footprint.rect else { continue };
+            triangles += call.triangle_count() as u64;
+            let (first, last) = (rect.y0 / BAND_ROWS, (rect.y1 - 1) / BAND_ROWS);
+            for list in &mut self.lists[first as usize..=last as usize] {
+                list.calls.push(index as u32);
+            }
+        }
+        triangles
+    }
+
+    fn sum(&mut self, calls: &[DrawCall]) -> Work {
+        self.drawn.clear();
+        self.drawn.resize(calls.len(), false);
+        let mut work = Work::default();
+        for list in &self.lists {
+            work.kept += list.kept;
+            for &index in &list.drawn {
+                if !std::mem::replace(&mut self.drawn[index as usize], true) {
+                    work.calls += 1;
+                    work.triangles += calls[index as usize].triangle_count() as u64;
+                }
+            }
+        }
+        work
+    }
+}
+
+/// Draws the calls of a band.
+#[inline(always)]
+pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &mut S) {
+    let rows = sink.rows();
+    let mut vertices = Projected::EMPTY;
+    let List { calls, drawn, parts, kept } = list;
+    for &index in calls.iter() {
+        let (call, footprint) = (&frame.calls[index as usize], &frame.footprints[index as usize]);
+        let Some(rect) = &footprint.rect else { continue };
+        if sink.hides::<I>(&rows.clamp(rect), footprint.nearest) {
+            continue;
+        }
+        drawn.push(index);
+        let meshlets = call.mesh.meshlets(call.level);
+        parts.clear();
+        if meshlets.len() == 1 {
+            // It is as large as the call, and that is not hidden.
+            *kept += draw_part::<I, S>(frame, index, &meshlets.part(0), &mut vertices, sink);
+            continue;
+        }
+        for (register, boxes) in meshlets.boxes().iter().enumerate() {
+            let extents = extents::<I>(&footprint.clip_from_object, &frame.screen, boxes);
+            list_parts(extents, register * LANES, meshlets.len(), &rows, parts);
+        }
+        parts.sort_unstable_by_key(|part| part.order);
+        for part in parts.iter() {
+            if !sink.hides::<I>(&part.rect, part.nearest) {
+                let part = meshlets.part(part.part as usize);
+                *kept += draw_part::<I, S>(frame, index, &part, &mut vertices, sink);
+            }
+        }
+    }
+}
+
+/// Adds those of sixteen parts from `first` on, of `count` in all, that may touch a band.
+#[inline(always)]
+fn list_parts<I: Isa>(
+    extents: Extents<I>,
+    first: usize,
+    count: usize,
+    rows: &Rows,
+    parts: &mut Vec<PartInBand>,
+) {
+    let x0 = I::max(extents.first[0], I::splat(0));
+    let y0 = I::max(extents.first[1], I::splat(rows.first));
+    let x1 = I::min(extents.last[0], I::splat(rows.last_column));
+    let y1 = I::min(extents.last[1], I::splat(rows.last));
+    let present = ALL >> (LANES - (count - first).min(LANES));
+    let mut lanes: Mask = present & !(I::gt(x0, x1) | I::gt(y0, y1));
+    if lanes == 0 {
+        return;
+    }
+    let [x0, y0, x1, y1] = store_each::<I, 4>([x0, y0, x1, y1]);
+    let nearest = I::store_f(extents.nearest);
+    while lanes != 0 {
+        let lane = lanes.trailing_zeros() as usize;
+        lanes &= lanes - 1;
+        let bits = nearest[lane].to_bits();
+        // Floats in order of their bits: the negative ones turned round.
+        let ascending = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
+        parts.push(PartInBand {
+            order: !ascending,
+            part: (first + lane) as u32,
+            nearest: nearest[lane],
+            rect: PixelRect {
+                x0: x0[lane] as u32,
+                y0: y0[lane] as u32,
+                x1: x1[lane] as u32 + 1,
+                y1: y1[lane] as u32 + 1,
+            },
+        });
+    }
+}
+
+/// Draws a part of a mesh; returns how many of its triangles begin in the band.
+#[inline(always)]
+fn draw_part<I: Isa, S: Sink>(
+    frame: &Frame<'_>,
+    call: u32,
+    part: &Part<'_>,
+    vertices: &mut Projected,
+    sink: &mut S,
+) -> u64 {
+    let matrix = &frame.footprints[call as usize].clip_from_object;
+    vertices.transform::<I>(&frame.screen, matrix, part.positions);
+    let mut kept = 0;
+    for (register, triangles) in part.triangles.iter().enumerate() {
+        let mut lanes = ALL >> (LANES - (part.count - register * LANES).min(LANES));
+        if vertices.clipped() != 0 {
+            let (clipped, left) = to_clip(vertices, part, register);
+            kept += draw_clipped::<I, S>(frame, call, triangles, lanes & left, sink);
+            lanes &= !clipped;
+        }
+        if lanes == 0 {
+            continue;
+        }
+        let (zero, nowhere) = (I::splat(0), I::splat_f(0.0));
+        let mut corners = Corners { x: [zero; 3], y: [zero; 3], nearness: [nowhere; 3] };
+        for k in 0..3 {
+            let at = I::widen(&part.corners[k][register]);
+            corners.x[k] = I::look_up(&vertices.x, at);
+            corners.y[k] = I::look_up(&vertices.y, at);
+            corners.nearness[k] = I::look_up_f(&vertices.nearness, at);
+        }
+        let ids = Ids { call, triangles: if S::WANTS_IDS { Some(triangles) } else { None } };
+        kept += raster::triangles::<I, S>(&corners, lanes, ids, sink);
+    }
+    u64::from(kept)
+}
+
+/// Of sixteen triangles: those with a corner that needs clipping, and those among them that
+/// do not lie beyond one plane as a whole.
+#[cold]
+fn to_clip(vertices: &Projected, part: &Part<'_>, register: usize) -> (Mask, Mask) {
+    let (mut clipped, mut left) = (0, 0);
+    let all = vertices.clipped();
+    for lane in 0..LANES {
+        let at = part.corners.map(|corners| corners[register][lane]);
+        let any = at.iter().any(|&v| all >> v & 1 != 0);
+        let beyond = |plane: u64| at.iter().all(|&v| plane >> v & 1 != 0);
+        clipped |= Mask::from(any) << lane;
+        left |= Mask::from(any && !beyond(vertices.beyond[0]) && !beyond(vertices.beyond[1])) << lane;
+    }
+    (clipped, left)
+}
+
+/// Clips and draws triangles one by one.
+#[inline(always)]
+fn draw_clipped<I: Isa, S: Sink>(
+    frame: &Frame<'_>,
+    call: u32,
+    triangles: &[u32; LANES],
+    mut lanes: Mask,
+    sink: &mut S,
+) -> u32 {
+    let rows = sink.rows();
+    let mut kept = 0;
+    while lanes != 0 {
+        let triangle = triangles[lanes.trailing_zeros() as usize];
+        lanes &= lanes - 1;
+        let fan = clipped(frame, call, triangle);
+        for piece in fan.triangles() {
+            let (first, last) = piece.rows();
+            let first = first.max(0);
+            kept += u32::from(first >= rows.first && first <= last && first <= rows.last);
+            large::walk::<I, S>(piece, Id { call, triangle }, sink);
+        }
+    }
+    kept
+}
+
+/// What is left of a triangle of a draw call.
+#[cold]
+fn clipped(frame: &Frame<'_>, call: u32, triangle: u32) -> Fan {
+    let geometry = frame.calls[call as usize].geometry();
+    let matrix = &frame.footprints[call as usize].clip_from_object;
+    let positions = [0, 1, 2].map(|k| {
+        let vertex = geometry.indices[3 * triangle as usize + k];
+        clip_position(matrix, geometry.positions[vertex as usize])
+    });
+    let vertices = positions.map(|p| frame.screen.project(p.x, p.y, p.z, p.w));
+    clip(&frame.screen, positions, vertices)
+}
