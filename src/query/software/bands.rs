@@ -15,7 +15,7 @@ use super::isa::{ALL, Isa, LANES, Mask, store_each};
 use super::large;
 use super::layout::BLOCK;
 use super::pass::DrawCall;
-use super::raster::{self, Ids};
+use super::raster::{self, Ids, Room};
 use super::setup::Corners;
 use super::simd::{self, SimdLevel};
 use super::sink::{Id, Rows, Sink};
@@ -52,11 +52,19 @@ pub(crate) struct Work {
 /// The draw calls of a band, and room to work.
 #[derive(Debug, Default)]
 pub(crate) struct List {
-    calls: Vec<u32>,
+    calls: Vec<CallInBand>,
     /// Those that were not hidden.
     drawn: Vec<u32>,
     parts: Vec<PartInBand>,
     kept: u64,
+}
+
+/// A draw call that may touch a band.
+#[derive(Clone, Copy, Debug)]
+struct CallInBand {
+    call: u32,
+    nearest: f32,
+    rect: PixelRect,
 }
 
 /// A part of a mesh that may touch a band.
@@ -121,8 +129,11 @@ impl Bands {
             let Some(rect) = footprint.rect else { continue };
             triangles += call.triangle_count() as u64;
             let (first, last) = (rect.y0 / BAND_ROWS, (rect.y1 - 1) / BAND_ROWS);
-            for list in &mut self.lists[first as usize..=last as usize] {
-                list.calls.push(index as u32);
+            for band in first..=last {
+                let (y0, y1) = (rect.y0.max(band * BAND_ROWS), rect.y1.min((band + 1) * BAND_ROWS));
+                let rect = PixelRect { y0, y1, ..rect };
+                let entry = CallInBand { call: index as u32, nearest: footprint.nearest, rect };
+                self.lists[band as usize].calls.push(entry);
             }
         }
         triangles
@@ -149,20 +160,19 @@ impl Bands {
 #[inline(always)]
 pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &mut S) {
     let rows = sink.rows();
-    let mut vertices = Projected::EMPTY;
+    let mut room = (Projected::EMPTY, Room::EMPTY);
     let List { calls, drawn, parts, kept } = list;
-    for &index in calls.iter() {
-        let (call, footprint) = (&frame.calls[index as usize], &frame.footprints[index as usize]);
-        let Some(rect) = &footprint.rect else { continue };
-        if sink.hides::<I>(&rows.clamp(rect), footprint.nearest) {
+    for &CallInBand { call: index, nearest, rect } in calls.iter() {
+        if sink.hides::<I>(&rect, nearest) {
             continue;
         }
         drawn.push(index);
+        let (call, footprint) = (&frame.calls[index as usize], &frame.footprints[index as usize]);
         let meshlets = call.mesh.meshlets(call.level);
         parts.clear();
         if meshlets.len() == 1 {
             // It is as large as the call, and that is not hidden.
-            *kept += draw_part::<I, S>(frame, index, &meshlets.part(0), &mut vertices, sink);
+            *kept += draw_part::<I, S>(frame, index, &meshlets.part(0), &mut room, sink);
             continue;
         }
         for (register, boxes) in meshlets.boxes().iter().enumerate() {
@@ -173,7 +183,7 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
         for part in parts.iter() {
             if !sink.hides::<I>(&part.rect, part.nearest) {
                 let part = meshlets.part(part.part as usize);
-                *kept += draw_part::<I, S>(frame, index, &part, &mut vertices, sink);
+                *kept += draw_part::<I, S>(frame, index, &part, &mut room, sink);
             }
         }
     }
@@ -225,7 +235,7 @@ fn draw_part<I: Isa, S: Sink>(
     frame: &Frame<'_>,
     call: u32,
     part: &Part<'_>,
-    vertices: &mut Projected,
+    (vertices, room): &mut (Projected, Room),
     sink: &mut S,
 ) -> u64 {
     let matrix = &frame.footprints[call as usize].clip_from_object;
@@ -250,7 +260,7 @@ fn draw_part<I: Isa, S: Sink>(
             corners.nearness[k] = I::look_up_f(&vertices.nearness, at);
         }
         let ids = Ids { call, triangles: if S::WANTS_IDS { Some(triangles) } else { None } };
-        kept += raster::triangles::<I, S>(&corners, lanes, ids, sink);
+        kept += raster::triangles::<I, S>(&corners, lanes, ids, room, sink);
     }
     u64::from(kept)
 }

@@ -141,9 +141,9 @@ pub(crate) struct DepthSink<'a> {
 
 /// Changes of a block after which its hierarchy is brought up to date before somebody is drawn for
 /// want of knowing better.
-const REFRESH_CALL: u32 = 8;
+pub static REFRESH_CALL_: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("RC").map_or(4, |v| v.parse().unwrap()));
 /// The same before a triangle is drawn.
-const REFRESH_TRIANGLE: u32 = 48;
+pub static REFRESH_TRIANGLE_: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("RT").map_or(8, |v| v.parse().unwrap()));
 
 impl DepthSink<'_> {
     #[inline(always)]
@@ -172,7 +172,7 @@ impl Sink for DepthSink<'_> {
             |block, tiles| {
             // Nothing nearer than what is there: the greatest nearness stays as it is.
             let mut open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
-            if open != 0 && self.base.stale[block] & !STALE >= REFRESH_CALL {
+            if open != 0 && self.base.stale[block] & !STALE >= *REFRESH_CALL_ {
                 self.refresh::<I>(block);
                 open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
             }
@@ -184,7 +184,7 @@ impl Sink for DepthSink<'_> {
 
     #[inline(always)]
     fn open_tiles<I: Isa>(&mut self, block: usize, greatest: I::F) -> Mask {
-        if self.base.stale[block] & !STALE >= REFRESH_TRIANGLE {
+        if self.base.stale[block] & !STALE >= *REFRESH_TRIANGLE_ {
             self.refresh::<I>(block);
         }
         I::gt_f(greatest, I::load_f(&self.base.farthest[block]))

@@ -40,6 +40,8 @@ pub(crate) trait Isa {
     fn shift_right<const N: u32>(a: Self::I) -> Self::I;
     /// Where `a > b`.
     fn gt(a: Self::I, b: Self::I) -> Mask;
+    /// The lanes where the mask is set, moved to the front in their order; the rest is anything.
+    fn compress(mask: Mask, a: Self::I) -> Self::I;
     /// `b` where the mask is set, else `a`.
     fn blend(mask: Mask, a: Self::I, b: Self::I) -> Self::I;
 
@@ -197,6 +199,16 @@ impl Isa for Portable {
     #[inline(always)]
     fn gt(a: Self::I, b: Self::I) -> Mask {
         mask(zip(a, b, |a, b| a > b))
+    }
+    #[inline(always)]
+    fn compress(mut mask: Mask, a: Self::I) -> Self::I {
+        let (mut out, mut count) = (a, 0);
+        while mask != 0 {
+            out[count] = a[mask.trailing_zeros() as usize % LANES];
+            count += 1;
+            mask &= mask - 1;
+        }
+        out
     }
     #[inline(always)]
     fn blend(mask: Mask, a: Self::I, b: Self::I) -> Self::I {

@@ -101,6 +101,40 @@ impl<I: Isa> Shading<I> {
         }
     }
 
+    /// How much nearer than at its first pixel a tile can be, and a bound on the error of that and
+    /// of all sums at samples of the triangle.
+    ///
+    /// Nearness is linear over the screen, so it grows toward one corner of a tile by its change
+    /// along both sides. Each of the terms here is a few roundings of 2⁻²⁴ away from its exact
+    /// value, each sum at a sample as many from its own; 2⁻²⁰ of all magnitudes covers both.
+    #[inline(always)]
+    pub(crate) fn rise(&self, step_x: &[I::I; 3], step_y: &[I::I; 3], side: f32) -> I::F {
+        let zero = I::splat_f(0.0);
+        let (mut rise, mut all) = (zero, zero);
+        for step in [step_x, step_y] {
+            let one = I::mul_f(I::mul_f(I::to_f(step[1]), self.inverse_area), self.along_1);
+            let two = I::mul_f(I::mul_f(I::to_f(step[2]), self.inverse_area), self.along_2);
+            rise = I::add_f(rise, I::max_f(I::add_f(one, two), zero));
+            all = I::add_f(all, I::add_f(magnitude::<I>(one), magnitude::<I>(two)));
+        }
+        let sides = I::splat_f(side - 1.0);
+        let corners = I::add_f(magnitude::<I>(self.along_1), magnitude::<I>(self.along_2));
+        let all = I::add_f(I::mul_f(all, sides), I::add_f(corners, magnitude::<I>(self.base)));
+        I::add_f(I::mul_f(rise, sides), I::mul_f(all, I::splat_f(SLACK)))
+    }
+
+    /// No sample of the triangle in a tile is nearer. The edge functions are those at the tile's
+    /// first pixel, `rise` is what [`Shading::rise`] found for it.
+    #[inline(always)]
+    pub(crate) fn bound(&self, edge_1: I::F, edge_2: I::F, rise: I::F) -> I::F {
+        let one = I::mul_f(I::mul_f(edge_1, self.inverse_area), self.along_1);
+        let two = I::mul_f(I::mul_f(edge_2, self.inverse_area), self.along_2);
+        let n = I::add_f(self.base, I::add_f(one, two));
+        let all = I::add_f(magnitude::<I>(one), magnitude::<I>(two));
+        let bound = I::add_f(I::add_f(n, rise), I::mul_f(all, I::splat_f(SLACK)));
+        I::min_f(bound, self.greatest)
+    }
+
     /// The nearness where the edge functions opposite to corners 1 and 2 have these values.
     #[inline(always)]
     pub(crate) fn nearness(&self, edge_1: I::F, edge_2: I::F) -> I::F {
@@ -109,6 +143,14 @@ impl<I: Isa> Shading<I> {
         let n = I::add_f(self.base, I::add_f(I::mul_f(l1, self.along_1), I::mul_f(l2, self.along_2)));
         I::min_f(I::max_f(n, self.least), self.greatest)
     }
+}
+
+/// 2⁻²⁰.
+const SLACK: f32 = 1.0 / 1_048_576.0;
+
+#[inline(always)]
+fn magnitude<I: Isa>(v: I::F) -> I::F {
+    I::max_f(v, I::sub_f(I::splat_f(0.0), v))
 }
 
 /// The first sample column (or row) at or after coordinates in subpixels.

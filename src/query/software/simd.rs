@@ -136,6 +136,7 @@ impl Isa for Avx512 {
         and(a: __m512i, b: __m512i) -> __m512i = _mm512_and_si512(a, b);
         or(a: __m512i, b: __m512i) -> __m512i = _mm512_or_si512(a, b);
         gt(a: __m512i, b: __m512i) -> Mask = Mask::from(_mm512_cmpgt_epi32_mask(a, b));
+        compress(mask: Mask, a: __m512i) -> __m512i = _mm512_maskz_compress_epi32(mask as u16, a);
         blend(mask: Mask, a: __m512i, b: __m512i) -> __m512i = _mm512_mask_blend_epi32(mask as u16, a, b);
         splat_f(v: f32) -> __m512 = _mm512_set1_ps(v);
         load_f(v: &[f32; LANES]) -> __m512 = _mm512_loadu_ps(v.as_ptr());

@@ -53,14 +53,4 @@ impl Rows {
     pub(crate) fn block(&self, column: i32, row: i32) -> usize {
         ((row - self.first) / BLOCK) as usize * self.blocks + (column / BLOCK) as usize
     }
-
-    /// Those of some pixels that lie in the band.
-    #[inline(always)]
-    pub(crate) fn clamp(&self, rect: &PixelRect) -> PixelRect {
-        PixelRect {
-            y0: rect.y0.max(self.first as u32),
-            y1: rect.y1.min(self.last as u32 + 1),
-            ..*rect
-        }
-    }
 }
