@@ -31,6 +31,9 @@ const SHARED_FROM: u64 = 4096;
 /// Draw calls from which they are bounded by several threads.
 const BOUNDED_TOGETHER: usize = 256;
 
+/// Draw calls between a hint that one will be read and its turn.
+const AHEAD: usize = 4;
+
 /// What every band reads.
 pub(crate) struct Frame<'a> {
     screen: Screen,
@@ -104,7 +107,7 @@ impl Bands {
         }
         let triangles = self.list(view, calls);
         let frame = Frame { screen, calls, footprints: &self.footprints };
-        let bands = self.lists.iter_mut().zip(sinks).filter(|(list, _)| !list.calls.is_empty());
+        let bands = self.lists.iter_mut().zip(sinks);
         let run = |(list, mut sink): (&mut List, S)| simd::band(level, &frame, list, &mut sink);
         if triangles < SHARED_FROM || rayon::current_num_threads() == 1 {
             bands.for_each(run);
@@ -159,10 +162,19 @@ impl Bands {
 /// Draws the calls of a band.
 #[inline(always)]
 pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &mut S) {
+    if list.calls.is_empty() {
+        return;
+    }
+    sink.begin();
     let rows = sink.rows();
     let mut room = (Projected::EMPTY, Room::EMPTY);
     let List { calls, drawn, parts, kept } = list;
-    for &CallInBand { call: index, nearest, rect } in calls.iter() {
+    for (at, &CallInBand { call: index, nearest, rect }) in calls.iter().enumerate() {
+        // The app's order is not the band's: calls lie far apart in memory.
+        if let Some(soon) = calls.get(at + AHEAD) {
+            I::prefetch(&frame.calls[soon.call as usize]);
+            I::prefetch(&frame.footprints[soon.call as usize]);
+        }
         if sink.hides::<I>(&rect, nearest) {
             continue;
         }

@@ -14,36 +14,32 @@ pub(crate) struct Depth {
     width: u32,
     height: u32,
     across: usize,
+    cleared: f32,
     blocks: Vec<Block>,
+    /// Of each band: it holds the last frame and counts as cleared.
+    pending: Vec<bool>,
 }
 
 impl Depth {
-    /// Takes a size and clears.
+    /// Takes a size. Bands are cleared when they are first drawn on, or by [`Depth::settle`]: then
+    /// they are in the cache.
     pub(crate) fn reset(&mut self, width: u32, height: u32, cleared: f32) {
         let down = height.div_ceil(BLOCK as u32) as usize;
         self.across = width.div_ceil(BLOCK as u32) as usize;
-        (self.width, self.height) = (width, height);
-        self.blocks.clear();
+        (self.width, self.height, self.cleared) = (width, height, cleared);
         self.blocks.resize(self.across * down, Block([[cleared; LANES]; LANES]));
-        let (odd_x, odd_y) = (width % BLOCK as u32 != 0, height % BLOCK as u32 != 0);
-        for row in 0..down {
-            for column in 0..self.across {
-                if (odd_x && column + 1 == self.across) || (odd_y && row + 1 == down) {
-                    self.pad(column as u32, row as u32);
-                }
-            }
-        }
+        self.pending.clear();
+        self.pending.resize(height.div_ceil(BAND_ROWS) as usize, true);
     }
 
-    fn pad(&mut self, column: u32, row: u32) {
-        let side = BLOCK as u32;
-        let block = &mut self.blocks[row as usize * self.across + column as usize];
-        for y in 0..side {
-            for x in 0..side {
-                if column * side + x >= self.width || row * side + y >= self.height {
-                    let (tile, lane) = within(x, y);
-                    block.0[tile][lane] = f32::INFINITY;
-                }
+    /// Clears what nothing was drawn on.
+    pub(crate) fn settle(&mut self) {
+        let (many, cleared) = (self.blocks_a_band(), self.cleared);
+        let rows = self.rows();
+        let bands = self.blocks.chunks_mut(many).zip(&mut self.pending).zip(rows);
+        for ((blocks, pending), rows) in bands {
+            if std::mem::take(pending) {
+                clear(blocks, &rows, cleared);
             }
         }
     }
@@ -86,9 +82,12 @@ impl Depth {
         let (many, rows) = (self.blocks_a_band(), self.rows());
         let base = hi_z.base();
         let hierarchy = base.farthest.chunks_mut(many).zip(base.stale.chunks_mut(many));
-        let bands = self.blocks.chunks_mut(many).zip(hierarchy);
-        bands.zip(rows).map(|((blocks, (farthest, stale)), rows)| DepthSink {
+        let bands = self.blocks.chunks_mut(many).zip(&mut self.pending).zip(hierarchy);
+        let cleared = self.cleared;
+        bands.zip(rows).map(move |(((blocks, pending), (farthest, stale)), rows)| DepthSink {
             blocks,
+            pending,
+            cleared,
             base: Base { farthest, stale },
             rows,
         })
@@ -115,17 +114,16 @@ impl<'a> DepthImage<'a> {
 
     /// The nearness of a row's pixels, from the left; row 0 is the uppermost.
     pub fn row(&self, y: u32) -> impl ExactSizeIterator<Item = f32> + use<'a> {
-        let (depth, side) = (self.depth, BLOCK as u32);
-        let row = &depth.blocks[(y / side) as usize * depth.across..][..depth.across];
-        (0..depth.width).map(move |x| {
-            let (tile, lane) = within(x, y);
-            row[(x / side) as usize].0[tile][lane]
-        })
+        let image = *self;
+        (0..self.depth.width).map(move |x| image.at(x, y))
     }
 
     /// The nearness of a pixel.
     pub fn at(&self, x: u32, y: u32) -> f32 {
         let side = BLOCK as u32;
+        if self.depth.pending[(y / BAND_ROWS) as usize] {
+            return self.depth.cleared;
+        }
         let (tile, lane) = within(x, y);
         self.depth.blocks[(y / side) as usize * self.depth.across + (x / side) as usize].0[tile][lane]
     }
@@ -135,13 +133,15 @@ impl<'a> DepthImage<'a> {
 #[derive(Debug)]
 pub(crate) struct DepthSink<'a> {
     blocks: &'a mut [Block],
+    pending: &'a mut bool,
+    cleared: f32,
     base: Base<'a>,
     rows: Rows,
 }
 
 /// Changes of a block after which its hierarchy is brought up to date before somebody is drawn for
 /// want of knowing better.
-pub static REFRESH_CALL_: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("RC").map_or(4, |v| v.parse().unwrap()));
+pub static REFRESH_CALL_: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("RC").map_or(8, |v| v.parse().unwrap()));
 /// The same before a triangle is drawn.
 pub static REFRESH_TRIANGLE_: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("RT").map_or(8, |v| v.parse().unwrap()));
 
@@ -155,6 +155,13 @@ impl DepthSink<'_> {
 
 impl Sink for DepthSink<'_> {
     const WANTS_IDS: bool = false;
+
+    #[inline(always)]
+    fn begin(&mut self) {
+        if std::mem::take(self.pending) {
+            clear(self.blocks, &self.rows, self.cleared);
+        }
+    }
 
     #[inline(always)]
     fn rows(&self) -> Rows {
@@ -205,6 +212,26 @@ impl Sink for DepthSink<'_> {
         // Stored in any case: which one is nearer cannot be foretold.
         *kept = if nearness > *kept { nearness } else { *kept };
         self.base.stale[block] = (self.base.stale[block] | STALE) + 1;
+    }
+}
+
+/// Clears the blocks of a band; what lies beyond the viewport becomes infinitely near.
+fn clear(blocks: &mut [Block], rows: &Rows, cleared: f32) {
+    blocks.fill(Block([[cleared; LANES]; LANES]));
+    let (width, height) = (rows.last_column + 1, rows.last + 1 - rows.first);
+    for (index, block) in blocks.iter_mut().enumerate() {
+        let first = [(index % rows.blocks) as i32, (index / rows.blocks) as i32].map(|b| b << BLOCK_BITS);
+        if first[0] + BLOCK <= width && first[1] + BLOCK <= height {
+            continue;
+        }
+        for y in 0..BLOCK {
+            for x in 0..BLOCK {
+                if first[0] + x >= width || first[1] + y >= height {
+                    let (tile, lane) = within(x as u32, y as u32);
+                    block.0[tile][lane] = f32::INFINITY;
+                }
+            }
+        }
     }
 }
 

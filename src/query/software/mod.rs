@@ -160,6 +160,7 @@ impl SoftwareQueries {
         if self.answered == self.asked.len() {
             return;
         }
+        self.depth.settle();
         self.hi_z.refresh(self.simd, &self.depth);
         let scene = count::Scene { depth: &self.depth, hi_z: &self.hi_z };
         let (simd, proxies) = (self.simd, &self.proxies);

@@ -75,7 +75,7 @@ pub(crate) fn triangles<I: Isa, S: Sink>(
         sample_tiny::<I, S>(&setup, tiny, first, side, ids, sink);
     }
     let few = I::splat(LISTED_SIDE - 1);
-    let mut walked = small & (I::gt(side[0], few) | I::gt(side[1], few));
+    let walked = small & (I::gt(side[0], few) | I::gt(side[1], few));
     let listed = small & !walked;
     if listed != 0 {
         room.rasterise::<I, S>(corners, listed, first, last, ids, sink);
@@ -84,10 +84,15 @@ pub(crate) fn triangles<I: Isa, S: Sink>(
         let block = I::splat(-BLOCK);
         let setup = Setup::new(corners, I::and(first[0], block), I::and(first[1], block));
         let stored = Stored::new(&setup, first, last);
-        while walked != 0 {
-            let lane = walked.trailing_zeros() as usize;
-            walked &= walked - 1;
-            stored.walk::<I, S>(lane, ids.of(lane), sink);
+        // Those that are wound like the nearest first: of a closed mesh they hide the others.
+        let turned = setup.turned & walked;
+        for lanes in if setup.nearest(walked) & turned == 0 { [walked & !turned, turned] } else { [turned, walked & !turned] } {
+            let mut lanes = lanes;
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                lanes &= lanes - 1;
+                stored.walk::<I, S>(lane, ids.of(lane), sink);
+            }
         }
     }
     if larger != 0 {

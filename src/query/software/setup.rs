@@ -8,7 +8,7 @@
 //! few ulps of that. All paths share [`Shading::nearness`]; the same triangle yields the same bits
 //! in each of them.
 
-use super::isa::Isa;
+use super::isa::{Isa, Mask};
 use super::vertex::{SUBPIXEL_BITS, SUBPIXELS};
 
 /// The longest side of a triangle's bounding box, in subpixels, that is rasterised in i32: an edge
@@ -35,9 +35,28 @@ pub(crate) struct Setup<I: Isa> {
     /// Covered is what is greater: -1 for a top or left edge, 0 for the others.
     pub(crate) limit: [I::I; 3],
     pub(crate) shading: Shading<I>,
+    /// Those that were wound the other way.
+    pub(crate) turned: Mask,
 }
 
 impl<I: Isa> Setup<I> {
+    /// Which of some triangles, at least one, has the nearest mean.
+    #[inline(always)]
+    pub(crate) fn nearest(&self, mut lanes: Mask) -> Mask {
+        let s = &self.shading;
+        let third = I::mul_f(I::add_f(s.along_1, s.along_2), I::splat_f(1.0 / 3.0));
+        let mean = I::store_f(I::add_f(s.base, third));
+        let (mut found, mut most) = (0, f32::NEG_INFINITY);
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros();
+            lanes &= lanes - 1;
+            if mean[lane as usize] > most {
+                (found, most) = (1 << lane, mean[lane as usize]);
+            }
+        }
+        found
+    }
+
     /// Sets up for the sample in a column and row of each triangle, at most 15 before its bounding
     /// box. Nothing overflows; lanes with anything else yield nonsense.
     #[inline(always)]
@@ -67,7 +86,7 @@ impl<I: Isa> Setup<I> {
         }
         let area = I::max(area, I::sub(zero, area));
         let shading = Shading::new(n, I::to_f(area));
-        Self { edge, step_x, step_y, limit, shading }
+        Self { edge, step_x, step_y, limit, shading, turned }
     }
 }
 

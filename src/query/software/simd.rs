@@ -191,6 +191,12 @@ impl Isa for Avx512 {
     }
 
     #[inline(always)]
+    fn prefetch<T>(what: &T) {
+        // SAFETY: a hint, which reads nothing.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(what).cast()) }
+    }
+
+    #[inline(always)]
     fn least(runs: &[[f32; LANES]; LANES]) -> __m512 {
         // SAFETY: as for `single`.
         unsafe { fold_runs!(runs, _mm512_min_ps) }

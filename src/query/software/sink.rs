@@ -9,6 +9,9 @@ pub(crate) trait Sink {
     /// Whether the sink wants to know which triangle a sample belongs to.
     const WANTS_IDS: bool;
 
+    /// Called before anything of a run is drawn.
+    fn begin(&mut self) {}
+
     /// What the sink holds.
     fn rows(&self) -> Rows;
 

@@ -48,6 +48,7 @@ pub(crate) struct Snapshot {
 impl SoftwareQueries {
     /// Takes the depth as it is now.
     pub(crate) fn keep(&mut self, snapshot: &mut Snapshot) {
+        self.depth.settle();
         self.hi_z.refresh(self.simd, &self.depth);
         snapshot.blocks.clear();
         snapshot.blocks.extend_from_slice(self.depth.blocks());
