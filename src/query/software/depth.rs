@@ -141,9 +141,9 @@ pub(crate) struct DepthSink<'a> {
 
 /// Changes of a block after which its hierarchy is brought up to date before somebody is drawn for
 /// want of knowing better.
-pub static REFRESH_CALL_: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("RC").map_or(8, |v| v.parse().unwrap()));
+const REFRESH_CALL: u32 = 8;
 /// The same before a triangle is drawn.
-pub static REFRESH_TRIANGLE_: std::sync::LazyLock<u32> = std::sync::LazyLock::new(|| std::env::var("RT").map_or(8, |v| v.parse().unwrap()));
+const REFRESH_TRIANGLE: u32 = 16;
 
 impl DepthSink<'_> {
     #[inline(always)]
@@ -179,7 +179,7 @@ impl Sink for DepthSink<'_> {
             |block, tiles| {
             // Nothing nearer than what is there: the greatest nearness stays as it is.
             let mut open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
-            if open != 0 && self.base.stale[block] & !STALE >= *REFRESH_CALL_ {
+            if open != 0 && self.base.stale[block] & !STALE >= REFRESH_CALL {
                 self.refresh::<I>(block);
                 open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
             }
@@ -191,7 +191,7 @@ impl Sink for DepthSink<'_> {
 
     #[inline(always)]
     fn open_tiles<I: Isa>(&mut self, block: usize, greatest: I::F) -> Mask {
-        if self.base.stale[block] & !STALE >= *REFRESH_TRIANGLE_ {
+        if self.base.stale[block] & !STALE >= REFRESH_TRIANGLE {
             self.refresh::<I>(block);
         }
         I::gt_f(greatest, I::load_f(&self.base.farthest[block]))
@@ -200,8 +200,10 @@ impl Sink for DepthSink<'_> {
     #[inline(always)]
     fn tile<I: Isa>(&mut self, block: usize, tile: usize, covered: Mask, nearness: I::F, _: Id) {
         let pixels = &mut self.blocks[block].0[tile];
-        let kept = I::load_f(pixels);
-        *pixels = I::store_f(I::blend_f(covered, kept, I::max_f(nearness, kept)));
+        // All lanes are stored: what follows cannot read from a masked store before it has reached
+        // the cache.
+        let covering = I::blend_f(covered, I::splat_f(f32::NEG_INFINITY), nearness);
+        *pixels = I::store_f(I::max_f(covering, I::load_f(pixels)));
         self.base.stale[block] = (self.base.stale[block] | STALE) + 1;
     }
 
