@@ -22,7 +22,7 @@ use scene::Scene;
 
 fn main() {
     let quick = std::env::args().any(|argument| argument == "--quick");
-    let rounds = std::env::var("ROUNDS").map_or(if quick { 3 } else { 11 }, |r| r.parse().unwrap());
+    let rounds = if quick { 3 } else { 11 };
     let sizes: &[_] = if quick { &[(1280, 720)] } else { &[(640, 360), (1280, 720), (1920, 1080)] };
     println!(
         "| scene | size | way | threads | Mtri/s | best | skipped | / plain | / 1 thread | ns a count | best | plain / it |"
@@ -34,7 +34,6 @@ fn main() {
         Scene::bunnies(36),
     ];
     for scene in scenes {
-        if std::env::var("SCENE").is_ok_and(|only| only != scene.name) { continue; }
         for &(width, height) in sizes {
             compare(&scene, width, height, rounds);
         }
@@ -58,12 +57,12 @@ struct Took {
 fn compare(scene: &Scene, width: u32, height: u32, rounds: usize) {
     let view = scene::view(width, height);
     let proxies = scene.proxies(&view);
-    let mut ways = if std::env::var("ONLY").is_ok() { vec![] } else { vec![Way::Plain(Box::new(Plain::new()))] };
+    let mut ways = vec![Way::Plain(Box::new(Plain::new()))];
     for level in SimdLevel::ALL {
-        if level > SimdLevel::detect() || std::env::var("ONLY").is_ok_and(|only| only != format!("{level:?}")) {
+        if level > SimdLevel::detect() {
             continue;
         }
-        for threads in if std::env::var("SCENE").is_ok() { vec![1] } else { vec![1, 2] } {
+        for threads in [1, 2] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
             ways.push(Way::Ours {
                 level,

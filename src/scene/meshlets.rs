@@ -261,7 +261,8 @@ mod tests {
     #[test]
     fn parts_of_a_grid_are_small() {
         let side = 60;
-        let positions = (0..side * side).map(|i| Vec3::new((i % side) as f32, (i / side) as f32, 0.0)).collect();
+        let positions =
+            (0..side * side).map(|i| Vec3::new((i % side) as f32, (i / side) as f32, 0.0)).collect();
         let quad = |i: u32| [i, i + 1, i + side, i + 1, i + side + 1, i + side];
         let corners = (0..side * (side - 1)).filter(|i| i % side < side - 1);
         let level = Level { positions, indices: corners.flat_map(quad).collect(), error: 0.0 };

@@ -12,13 +12,15 @@ use rayon::prelude::*;
 use super::clip::{Fan, clip};
 use super::footprint::{Extents, Footprint, extents};
 use super::isa::{ALL, Isa, LANES, Mask, store_each};
-use super::large;
+use super::large::{self, Triangle};
 use super::layout::BLOCK;
+use super::level::SimdLevel;
 use super::pass::DrawCall;
-use super::raster::{self, Ids, Room};
+use super::raster::{self, Ids};
 use super::setup::Corners;
-use super::simd::{self, SimdLevel};
+use super::simd;
 use super::sink::{Id, Rows, Sink};
+use super::tiles::Room;
 use super::vertex::{Projected, Screen, clip_position};
 use crate::geom::{PixelRect, View};
 use crate::scene::meshlets::Part;
@@ -60,6 +62,8 @@ pub(crate) struct List {
     drawn: Vec<u32>,
     parts: Vec<PartInBand>,
     kept: u64,
+    vertices: Projected,
+    room: Room,
 }
 
 /// A draw call that may touch a band.
@@ -167,8 +171,7 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
     }
     sink.begin();
     let rows = sink.rows();
-    let mut room = (Projected::EMPTY, Room::EMPTY);
-    let List { calls, drawn, parts, kept } = list;
+    let List { calls, drawn, parts, kept, vertices, room } = list;
     for (at, &CallInBand { call: index, nearest, rect }) in calls.iter().enumerate() {
         // The app's order is not the band's: calls lie far apart in memory.
         if let Some(soon) = calls.get(at + AHEAD) {
@@ -182,20 +185,21 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
         let (call, footprint) = (&frame.calls[index as usize], &frame.footprints[index as usize]);
         let meshlets = call.mesh.meshlets(call.level);
         parts.clear();
-        if meshlets.len() == 1 {
-            // It is as large as the call, and that is not hidden.
-            *kept += draw_part::<I, S>(frame, index, &meshlets.part(0), &mut room, sink);
-            continue;
+        let whole = meshlets.len() == 1;
+        if whole {
+            parts.push(PartInBand { order: 0, part: 0, nearest, rect });
+        } else {
+            for (register, boxes) in meshlets.boxes().iter().enumerate() {
+                let extents = extents::<I>(&footprint.clip_from_object, &frame.screen, boxes);
+                list_parts(extents, register * LANES, meshlets.len(), &rows, parts);
+            }
+            parts.sort_unstable_by_key(|part| part.order);
         }
-        for (register, boxes) in meshlets.boxes().iter().enumerate() {
-            let extents = extents::<I>(&footprint.clip_from_object, &frame.screen, boxes);
-            list_parts(extents, register * LANES, meshlets.len(), &rows, parts);
-        }
-        parts.sort_unstable_by_key(|part| part.order);
         for part in parts.iter() {
-            if !sink.hides::<I>(&part.rect, part.nearest) {
+            // A mesh of one part is as large as the call, and that is not hidden.
+            if whole || !sink.hides::<I>(&part.rect, part.nearest) {
                 let part = meshlets.part(part.part as usize);
-                *kept += draw_part::<I, S>(frame, index, &part, &mut room, sink);
+                *kept += draw_part::<I, S>(frame, index, &part, vertices, room, sink);
             }
         }
     }
@@ -247,7 +251,8 @@ fn draw_part<I: Isa, S: Sink>(
     frame: &Frame<'_>,
     call: u32,
     part: &Part<'_>,
-    (vertices, room): &mut (Projected, Room),
+    vertices: &mut Projected,
+    room: &mut Room,
     sink: &mut S,
 ) -> u64 {
     let matrix = &frame.footprints[call as usize].clip_from_object;
@@ -257,7 +262,7 @@ fn draw_part<I: Isa, S: Sink>(
         let mut lanes = ALL >> (LANES - (part.count - register * LANES).min(LANES));
         if vertices.clipped() != 0 {
             let (clipped, left) = to_clip(vertices, part, register);
-            kept += draw_clipped::<I, S>(frame, call, triangles, lanes & left, sink);
+            kept += list_clipped(frame, call, triangles, lanes & left, sink.rows(), &mut room.large);
             lanes &= !clipped;
         }
         if lanes == 0 {
@@ -273,6 +278,9 @@ fn draw_part<I: Isa, S: Sink>(
         }
         let ids = Ids { call, triangles: if S::WANTS_IDS { Some(triangles) } else { None } };
         kept += raster::triangles::<I, S>(&corners, lanes, ids, room, sink);
+    }
+    for (triangle, id) in room.large.drain(..) {
+        large::walk::<I, S>(&triangle, id, sink);
     }
     u64::from(kept)
 }
@@ -293,33 +301,31 @@ fn to_clip(vertices: &Projected, part: &Part<'_>, register: usize) -> (Mask, Mas
     (clipped, left)
 }
 
-/// Clips and draws triangles one by one.
-#[inline(always)]
-fn draw_clipped<I: Isa, S: Sink>(
+/// Clips triangles and leaves what remains for later; returns how many pieces begin in the band.
+#[cold]
+fn list_clipped(
     frame: &Frame<'_>,
     call: u32,
     triangles: &[u32; LANES],
     mut lanes: Mask,
-    sink: &mut S,
+    rows: Rows,
+    large: &mut Vec<(Triangle, Id)>,
 ) -> u32 {
-    let rows = sink.rows();
     let mut kept = 0;
     while lanes != 0 {
         let triangle = triangles[lanes.trailing_zeros() as usize];
         lanes &= lanes - 1;
-        let fan = clipped(frame, call, triangle);
-        for piece in fan.triangles() {
+        for piece in clipped(frame, call, triangle).triangles() {
             let (first, last) = piece.rows();
             let first = first.max(0);
-            kept += u32::from(first >= rows.first && first <= last && first <= rows.last);
-            large::walk::<I, S>(piece, Id { call, triangle }, sink);
+            kept += u32::from(first >= rows.first && first <= last.min(rows.last));
+            large.push((*piece, Id { call, triangle }));
         }
     }
     kept
 }
 
 /// What is left of a triangle of a draw call.
-#[cold]
 fn clipped(frame: &Frame<'_>, call: u32, triangle: u32) -> Fan {
     let geometry = frame.calls[call as usize].geometry();
     let matrix = &frame.footprints[call as usize].clip_from_object;

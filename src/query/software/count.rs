@@ -47,10 +47,12 @@ pub(crate) fn any<I: Isa>(scene: Scene<'_>, proxy: &Proxy) -> bool {
         #[inline(always)]
         |visit| {
             found |= match visit {
-                Visit::Children { part, far, near } => part.inside & I::ge_f(part.entry_least, near) != 0 || {
-                    part.open &= !I::gt_f(far, part.entry_most);
-                    false
-                },
+                Visit::Children { part, far, near } => {
+                    part.inside & I::ge_f(part.entry_least, near) != 0 || {
+                        part.open &= !I::gt_f(far, part.entry_most);
+                        false
+                    }
+                }
                 Visit::Samples { visible, .. } => visible != 0,
             };
             !found

@@ -45,14 +45,17 @@ impl Depth {
     }
 
     /// Blocks a row of blocks.
+    #[inline(always)]
     pub(crate) fn across(&self) -> usize {
         self.across
     }
 
+    #[inline(always)]
     pub(crate) fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
+    #[inline(always)]
     pub(crate) fn image(&self) -> DepthImage<'_> {
         DepthImage { depth: self }
     }
@@ -103,11 +106,13 @@ pub struct DepthImage<'a> {
 
 impl<'a> DepthImage<'a> {
     /// Width in pixels.
+    #[inline]
     pub fn width(&self) -> u32 {
         self.depth.width
     }
 
     /// Height in pixels.
+    #[inline]
     pub fn height(&self) -> u32 {
         self.depth.height
     }
@@ -177,15 +182,16 @@ impl Sink for DepthSink<'_> {
             rect,
             #[inline(always)]
             |block, tiles| {
-            // Nothing nearer than what is there: the greatest nearness stays as it is.
-            let mut open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
-            if open != 0 && self.base.stale[block] & !STALE >= REFRESH_CALL {
-                self.refresh::<I>(block);
-                open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
-            }
-            hidden = open == 0;
-            hidden
-        });
+                // Nothing nearer than what is there: the greatest nearness stays as it is.
+                let mut open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
+                if open != 0 && self.base.stale[block] & !STALE >= REFRESH_CALL {
+                    self.refresh::<I>(block);
+                    open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
+                }
+                hidden = open == 0;
+                hidden
+            },
+        );
         hidden
     }
 

@@ -11,7 +11,8 @@ use rayon::prelude::*;
 use super::depth::Depth;
 use super::isa::{Isa, LANES};
 use super::layout::{BLOCK_BITS, Block, TILE_BITS};
-use super::simd::{self, SimdLevel};
+use super::level::SimdLevel;
+use super::simd;
 
 /// In the count of a block's changes: the hierarchy does not know of some of them.
 pub(crate) const STALE: u32 = 1 << 31;

@@ -6,11 +6,11 @@
 //! | `bands` | who does what, in which order, on which thread |
 //! | `footprint` | a draw call, or a part of one, against the view |
 //! | `vertex`, `clip` | object space to snapped screen coordinates |
-//! | `setup`, `raster`, `large` | triangles to samples |
+//! | `setup`, `raster`, `tiles`, `walk`, `large` | triangles to samples |
 //! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
 //! | `count` | answers to questions |
 //! | `visibility` | who owns each pixel of a finished frame |
-//! | `isa`, `simd` | sixteen lanes, for each instruction set |
+//! | `isa`, `level`, `simd` | sixteen lanes, for each instruction set |
 
 mod bands;
 mod clip;
@@ -21,21 +21,24 @@ mod hi_z;
 mod isa;
 mod large;
 mod layout;
+mod level;
 mod pass;
 mod raster;
 mod setup;
 mod simd;
 mod sink;
+mod tiles;
 mod vertex;
 mod visibility;
+mod walk;
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
 pub use depth::DepthImage;
+pub use level::SimdLevel;
 pub use pass::{DrawCall, SoftwarePass};
-pub use simd::SimdLevel;
 pub use visibility::VisibilityImage;
 
 use super::{Answer, QueryBackend, Ticket, Wait, Want};

@@ -6,66 +6,19 @@
 
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
-use std::sync::OnceLock;
 
 use super::bands::{self, Frame, List};
 use super::count::{self, Scene};
 use super::footprint::{self, Footprint};
 use super::hi_z::{self, Row};
+use super::isa::{Isa, Portable};
 #[cfg(target_arch = "x86_64")]
 use super::isa::{LANES, Mask, TABLE};
-use super::isa::{Isa, Portable};
+use super::level::SimdLevel;
 use super::pass::DrawCall;
 use super::sink::Sink;
 use super::vertex::Screen;
 use crate::geom::{Proxy, View};
-
-/// An instruction set for the kernels. Results are the same at every level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum SimdLevel {
-    /// What the target always has: plain code over arrays, which the compiler turns into SSE2 on
-    /// x86-64 and into NEON on AArch64.
-    Portable,
-    /// SSE4.1: 4 lanes.
-    Sse41,
-    /// AVX2: 8 lanes.
-    Avx2,
-    /// AVX-512 F, DQ, BW and VL: 16 lanes.
-    Avx512,
-}
-
-impl SimdLevel {
-    /// Every level, from the least to the best, whether this machine has it or not.
-    pub const ALL: [Self; 4] = [Self::Portable, Self::Sse41, Self::Avx2, Self::Avx512];
-
-    /// The best level that this machine has. Detected once.
-    pub fn detect() -> Self {
-        static LEVEL: OnceLock<SimdLevel> = OnceLock::new();
-        *LEVEL.get_or_init(detect)
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-fn detect() -> SimdLevel {
-    if is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512dq")
-        && is_x86_feature_detected!("avx512bw")
-        && is_x86_feature_detected!("avx512vl")
-    {
-        SimdLevel::Avx512
-    } else if is_x86_feature_detected!("avx2") {
-        SimdLevel::Avx2
-    } else if is_x86_feature_detected!("sse4.1") {
-        SimdLevel::Sse41
-    } else {
-        SimdLevel::Portable
-    }
-}
-
-#[cfg(not(target_arch = "x86_64"))]
-fn detect() -> SimdLevel {
-    SimdLevel::Portable
-}
 
 /// Methods of [`Isa`] that are one instruction on one register.
 #[cfg(target_arch = "x86_64")]
@@ -82,17 +35,54 @@ macro_rules! single {
     };
 }
 
+/// A bit for each lane, by lane.
+#[cfg(target_arch = "x86_64")]
+const LANE_BITS: [i32; LANES] =
+    [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16_384, 32_768];
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+#[inline]
+fn greater_256(a: __m256, b: __m256) -> __m256 {
+    _mm256_cmp_ps::<_CMP_GT_OQ>(a, b)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+#[inline]
+fn greater_or_equal_256(a: __m256, b: __m256) -> __m256 {
+    _mm256_cmp_ps::<_CMP_GE_OQ>(a, b)
+}
+
+/// An instruction on each of two or four registers.
+#[cfg(target_arch = "x86_64")]
+macro_rules! each {
+    (2, $f:ident, $($a:ident),*) => { [$f($($a[0]),*), $f($($a[1]),*)] };
+    (4, $f:ident, $($a:ident),*) => { [$f($($a[0]),*), $f($($a[1]),*), $f($($a[2]),*), $f($($a[3]),*)] };
+}
+
+/// The sign bits of two or four registers.
+#[cfg(target_arch = "x86_64")]
+macro_rules! mask {
+    (2, $bits:ident, $a:ident) => {
+        ($bits($a[0]) | $bits($a[1]) << 8) as Mask
+    };
+    (4, $bits:ident, $a:ident) => {
+        ($bits($a[0]) | $bits($a[1]) << 4 | $bits($a[2]) << 8 | $bits($a[3]) << 12) as Mask
+    };
+}
+
 /// An instruction set with registers of fewer than sixteen lanes: everything is done to several.
 #[cfg(target_arch = "x86_64")]
 macro_rules! several {
     (
-        $(#[$doc:meta])* $name:ident, $count:literal registers of $lanes:literal,
-        $i:ty, $f:ty, load [$load:ident, $load_f:ident],
+        $(#[$doc:meta])* $name:ident, $count:tt registers,
+        $i:ty, $f:ty,
         splat [$splat:ident, $splat_f:ident], cast [$as_i:ident, $as_f:ident, $convert:ident],
         integers [$add:ident, $sub:ident, $mul:ident, $min:ident, $max:ident, $and:ident, $or:ident],
         shifts [$shift_left:ident, $shift_right:ident], compare [$gt:ident, $eq:ident],
         floats [$add_f:ident, $sub_f:ident, $mul_f:ident, $div_f:ident, $min_f:ident, $max_f:ident],
-        masks [$gt_f:expr, $ge_f:expr, $bits:ident, $blend:ident]
+        masks [$gt_f:ident, $ge_f:ident, $bits:ident, $blend:ident]
     ) => {
         $(#[$doc])*
         #[cfg(target_arch = "x86_64")]
@@ -103,16 +93,13 @@ macro_rules! several {
             /// All bits of the lanes where a mask is set.
             #[inline(always)]
             fn expand(mask: Mask) -> [$f; $count] {
-                let bit: [i32; LANES] = std::array::from_fn(|lane| 1 << lane);
+                let (bit, all) = (Self::load(&LANE_BITS), Self::splat(mask as i32));
                 // SAFETY: only kernels at this level are given the type, so the machine has the
                 // instructions.
                 unsafe {
-                    let (bit, all) = (Self::load(&bit), $splat(mask as i32));
-                    let mut out = [$splat_f(0.0); $count];
-                    for i in 0..$count {
-                        out[i] = $as_f($eq($and(bit[i], all), bit[i]));
-                    }
-                    out
+                    let both = each!($count, $and, bit, all);
+                    let set = each!($count, $eq, both, bit);
+                    each!($count, $as_f, set)
                 }
             }
         }
@@ -122,31 +109,77 @@ macro_rules! several {
             type I = [$i; $count];
             type F = [$f; $count];
 
-            several! { @one $count,
-                splat(v: i32) -> $i = |_i| $splat(v);
-                load(v: &[i32; LANES]) -> $i = |i| $load(v.as_ptr().add($lanes * i).cast());
-                add(a: Self::I, b: Self::I) -> $i = |i| $add(a[i], b[i]);
-                sub(a: Self::I, b: Self::I) -> $i = |i| $sub(a[i], b[i]);
-                mul(a: Self::I, b: Self::I) -> $i = |i| $mul(a[i], b[i]);
-                min(a: Self::I, b: Self::I) -> $i = |i| $min(a[i], b[i]);
-                max(a: Self::I, b: Self::I) -> $i = |i| $max(a[i], b[i]);
-                and(a: Self::I, b: Self::I) -> $i = |i| $and(a[i], b[i]);
-                or(a: Self::I, b: Self::I) -> $i = |i| $or(a[i], b[i]);
-                bits(a: Self::F) -> $i = |i| $as_i(a[i]);
-                splat_f(v: f32) -> $f = |_i| $splat_f(v);
-                load_f(v: &[f32; LANES]) -> $f = |i| $load_f(v.as_ptr().add($lanes * i));
-                to_f(a: Self::I) -> $f = |i| $convert(a[i]);
-                add_f(a: Self::F, b: Self::F) -> $f = |i| $add_f(a[i], b[i]);
-                sub_f(a: Self::F, b: Self::F) -> $f = |i| $sub_f(a[i], b[i]);
-                mul_f(a: Self::F, b: Self::F) -> $f = |i| $mul_f(a[i], b[i]);
-                div_f(a: Self::F, b: Self::F) -> $f = |i| $div_f(a[i], b[i]);
-                min_f(a: Self::F, b: Self::F) -> $f = |i| $min_f(a[i], b[i]);
-                max_f(a: Self::F, b: Self::F) -> $f = |i| $max_f(a[i], b[i]);
+            several! { @each $count,
+                add(a, b) = $add; sub(a, b) = $sub; mul(a, b) = $mul; min(a, b) = $min; max(a, b) = $max;
+                and(a, b) = $and; or(a, b) = $or;
             }
-            several! { @mask $count, $lanes, $bits,
-                gt(a: Self::I, b: Self::I) = |i| $as_f($gt(a[i], b[i]));
-                gt_f(a: Self::F, b: Self::F) = |i| $gt_f(a[i], b[i]);
-                ge_f(a: Self::F, b: Self::F) = |i| $ge_f(a[i], b[i]);
+            several! { @each_f $count,
+                add_f(a, b) = $add_f; sub_f(a, b) = $sub_f; mul_f(a, b) = $mul_f; div_f(a, b) = $div_f;
+                min_f(a, b) = $min_f; max_f(a, b) = $max_f;
+            }
+
+            #[inline(always)]
+            fn splat(v: i32) -> Self::I {
+                // SAFETY: as for `expand`.
+                unsafe { [$splat(v); $count] }
+            }
+
+            #[inline(always)]
+            fn splat_f(v: f32) -> Self::F {
+                // SAFETY: as for `expand`.
+                unsafe { [$splat_f(v); $count] }
+            }
+
+            #[inline(always)]
+            fn load(v: &[i32; LANES]) -> Self::I {
+                // SAFETY: as many bytes, and all of them mean something.
+                unsafe { std::mem::transmute::<[i32; LANES], Self::I>(*v) }
+            }
+
+            #[inline(always)]
+            fn load_f(v: &[f32; LANES]) -> Self::F {
+                // SAFETY: as many bytes, and all of them mean something.
+                unsafe { std::mem::transmute::<[f32; LANES], Self::F>(*v) }
+            }
+
+            #[inline(always)]
+            fn bits(a: Self::F) -> Self::I {
+                // SAFETY: as for `expand`.
+                unsafe { each!($count, $as_i, a) }
+            }
+
+            #[inline(always)]
+            fn to_f(a: Self::I) -> Self::F {
+                // SAFETY: as for `expand`.
+                unsafe { each!($count, $convert, a) }
+            }
+
+            #[inline(always)]
+            fn gt(a: Self::I, b: Self::I) -> Mask {
+                // SAFETY: as for `expand`.
+                unsafe {
+                    let greater = each!($count, $gt, a, b);
+                    let greater = each!($count, $as_f, greater);
+                    mask!($count, $bits, greater)
+                }
+            }
+
+            #[inline(always)]
+            fn gt_f(a: Self::F, b: Self::F) -> Mask {
+                // SAFETY: as for `expand`.
+                unsafe {
+                    let greater = each!($count, $gt_f, a, b);
+                    mask!($count, $bits, greater)
+                }
+            }
+
+            #[inline(always)]
+            fn ge_f(a: Self::F, b: Self::F) -> Mask {
+                // SAFETY: as for `expand`.
+                unsafe {
+                    let greater = each!($count, $ge_f, a, b);
+                    mask!($count, $bits, greater)
+                }
             }
 
             #[inline(always)]
@@ -201,42 +234,33 @@ macro_rules! several {
 
             #[inline(always)]
             fn shift_left<const N: u32>(a: Self::I) -> Self::I {
-                let mut out = a;
-                for i in 0..$count {
-                    // SAFETY: as for `expand`.
-                    out[i] = unsafe { $shift_left(a[i], _mm_cvtsi32_si128(N as i32)) };
+                // SAFETY: as for `expand`.
+                unsafe {
+                    let by = [_mm_cvtsi32_si128(N as i32); $count];
+                    each!($count, $shift_left, a, by)
                 }
-                out
             }
 
             #[inline(always)]
             fn shift_right<const N: u32>(a: Self::I) -> Self::I {
-                let mut out = a;
-                for i in 0..$count {
-                    // SAFETY: as for `expand`.
-                    out[i] = unsafe { $shift_right(a[i], _mm_cvtsi32_si128(N as i32)) };
+                // SAFETY: as for `expand`.
+                unsafe {
+                    let by = [_mm_cvtsi32_si128(N as i32); $count];
+                    each!($count, $shift_right, a, by)
                 }
-                out
             }
 
             #[inline(always)]
             fn blend(mask: Mask, a: Self::I, b: Self::I) -> Self::I {
-                let (mask, mut out) = (Self::expand(mask), a);
-                for i in 0..$count {
-                    // SAFETY: as for `expand`.
-                    out[i] = unsafe { $as_i($blend($as_f(a[i]), $as_f(b[i]), mask[i])) };
-                }
-                out
+                // SAFETY: as for `expand`.
+                unsafe { Self::bits(Self::blend_f(mask, each!($count, $as_f, a), each!($count, $as_f, b))) }
             }
 
             #[inline(always)]
             fn blend_f(mask: Mask, a: Self::F, b: Self::F) -> Self::F {
-                let (mask, mut out) = (Self::expand(mask), a);
-                for i in 0..$count {
-                    // SAFETY: as for `expand`.
-                    out[i] = unsafe { $blend(a[i], b[i], mask[i]) };
-                }
-                out
+                let mask = Self::expand(mask);
+                // SAFETY: as for `expand`.
+                unsafe { each!($count, $blend, a, b, mask) }
             }
 
             #[inline(always)]
@@ -256,36 +280,25 @@ macro_rules! several {
             }
         }
     };
-    (@one $count:literal, $($name:ident($($arg:ident: $type:ty),*) -> $result:ty = |$i:ident| $body:expr;)*) => {
+    (@each $count:tt, $($name:ident($a:ident, $b:ident) = $f:ident;)*) => {
         $(
             #[inline(always)]
-            fn $name($($arg: $type),*) -> [$result; $count] {
-                // SAFETY: as for `expand`; pointers come from references to as many bytes as are
-                // read.
-                unsafe {
-                    let mut out = [std::mem::zeroed::<$result>(); $count];
-                    for $i in 0..$count {
-                        out[$i] = $body;
-                    }
-                    out
-                }
+            fn $name($a: Self::I, $b: Self::I) -> Self::I {
+                // SAFETY: as for `expand`.
+                unsafe { each!($count, $f, $a, $b) }
             }
         )*
     };
-    (@mask $count:literal, $lanes:literal, $bits:ident, $($name:ident($($arg:ident: $type:ty),*) = |$i:ident| $body:expr;)*) => {
+    (@each_f $count:tt, $($name:ident($a:ident, $b:ident) = $f:ident;)*) => {
         $(
             #[inline(always)]
-            fn $name($($arg: $type),*) -> Mask {
-                let mut mask = 0;
-                for $i in 0..$count {
-                    // SAFETY: as for `expand`.
-                    mask |= unsafe { $bits($body) as Mask } << ($lanes * $i);
-                }
-                mask
+            fn $name($a: Self::F, $b: Self::F) -> Self::F {
+                // SAFETY: as for `expand`.
+                unsafe { each!($count, $f, $a, $b) }
             }
         )*
     };
-    (@fold $count:literal, $runs:ident, $fold:ident, $order:tt) => {{
+    (@fold $count:tt, $runs:ident, $fold:ident, $order:tt) => {{
         let mut out = [0.0; LANES];
         for (out, run) in out.iter_mut().zip($runs) {
             let run = Self::load_f(run);
@@ -309,21 +322,21 @@ macro_rules! several {
 
 several! {
     /// [`SimdLevel::Avx2`].
-    Avx2, 2 registers of 8,
-    __m256i, __m256, load [_mm256_loadu_si256, _mm256_loadu_ps],
+    Avx2, 2 registers,
+    __m256i, __m256,
     splat [_mm256_set1_epi32, _mm256_set1_ps],
     cast [_mm256_castps_si256, _mm256_castsi256_ps, _mm256_cvtepi32_ps],
     integers [_mm256_add_epi32, _mm256_sub_epi32, _mm256_mullo_epi32, _mm256_min_epi32, _mm256_max_epi32,
         _mm256_and_si256, _mm256_or_si256],
     shifts [_mm256_sll_epi32, _mm256_sra_epi32], compare [_mm256_cmpgt_epi32, _mm256_cmpeq_epi32],
     floats [_mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps, _mm256_min_ps, _mm256_max_ps],
-    masks [_mm256_cmp_ps::<_CMP_GT_OQ>, _mm256_cmp_ps::<_CMP_GE_OQ>, _mm256_movemask_ps, _mm256_blendv_ps]
+    masks [greater_256, greater_or_equal_256, _mm256_movemask_ps, _mm256_blendv_ps]
 }
 
 several! {
     /// [`SimdLevel::Sse41`].
-    Sse41, 4 registers of 4,
-    __m128i, __m128, load [_mm_loadu_si128, _mm_loadu_ps],
+    Sse41, 4 registers,
+    __m128i, __m128,
     splat [_mm_set1_epi32, _mm_set1_ps],
     cast [_mm_castps_si128, _mm_castsi128_ps, _mm_cvtepi32_ps],
     integers [_mm_add_epi32, _mm_sub_epi32, _mm_mullo_epi32, _mm_min_epi32, _mm_max_epi32, _mm_and_si128,

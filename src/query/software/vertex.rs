@@ -2,6 +2,7 @@
 //!
 //! Everything is f32, unfused, in one fixed order, so that a vertex lands on the same spot
 //! whoever transforms it: that keeps shared edges watertight and re-rasterised triangles equal.
+#![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
 
 use glam::{Affine3A, DMat4, DVec4, Mat4, Vec3, Vec4};
 
@@ -128,6 +129,7 @@ pub(crate) fn clip_from_object(clip_from_world: &DMat4, world_from_object: &Affi
 }
 
 /// The vertices of a part of a mesh on the screen, where they need no clipping.
+#[derive(Debug)]
 pub(crate) struct Projected {
     pub(crate) x: [i32; MOST_VERTICES],
     pub(crate) y: [i32; MOST_VERTICES],
@@ -136,14 +138,13 @@ pub(crate) struct Projected {
     pub(crate) beyond: [u64; 3],
 }
 
-impl Projected {
-    pub(crate) const EMPTY: Self = Self {
-        x: [0; MOST_VERTICES],
-        y: [0; MOST_VERTICES],
-        nearness: [0.0; MOST_VERTICES],
-        beyond: [0; 3],
-    };
+impl Default for Projected {
+    fn default() -> Self {
+        Self { x: [0; MOST_VERTICES], y: [0; MOST_VERTICES], nearness: [0.0; MOST_VERTICES], beyond: [0; 3] }
+    }
+}
 
+impl Projected {
     /// The vertices that need clipping.
     #[inline(always)]
     pub(crate) fn clipped(&self) -> u64 {
@@ -163,11 +164,7 @@ impl Projected {
         let (ys, _) = self.y.as_chunks_mut::<LANES>();
         let (ns, _) = self.nearness.as_chunks_mut::<LANES>();
         for i in 0..positions[0].len().min(xs.len()) {
-            let p = [
-                I::load_f(&positions[0][i]),
-                I::load_f(&positions[1][i]),
-                I::load_f(&positions[2][i]),
-            ];
+            let p = [I::load_f(&positions[0][i]), I::load_f(&positions[1][i]), I::load_f(&positions[2][i])];
             let x = affine::<I>([cx.x, cy.x, cz.x, cw.x], p);
             let y = affine::<I>([cx.y, cy.y, cz.y, cw.y], p);
             let z = affine::<I>([cx.z, cy.z, cz.z, cw.z], p);

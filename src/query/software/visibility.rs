@@ -147,9 +147,10 @@ impl Sink for VisibilitySink<'_> {
             rect,
             #[inline(always)]
             |block, tiles| {
-            hidden = tiles & self.open_tiles::<I>(block, nearest) == 0;
-            hidden
-        });
+                hidden = tiles & self.open_tiles::<I>(block, nearest) == 0;
+                hidden
+            },
+        );
         hidden
     }
 

@@ -1,0 +1,50 @@
+//! Which instructions the machine has.
+
+use std::sync::OnceLock;
+
+/// An instruction set for the kernels. Results are the same at every level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SimdLevel {
+    /// What the target always has: plain code over arrays, which the compiler turns into SSE2 on
+    /// x86-64 and into NEON on AArch64.
+    Portable,
+    /// SSE4.1: 4 lanes.
+    Sse41,
+    /// AVX2: 8 lanes.
+    Avx2,
+    /// AVX-512 F, DQ, BW and VL: 16 lanes.
+    Avx512,
+}
+
+impl SimdLevel {
+    /// Every level, from the least to the best, whether this machine has it or not.
+    pub const ALL: [Self; 4] = [Self::Portable, Self::Sse41, Self::Avx2, Self::Avx512];
+
+    /// The best level that this machine has. Detected once.
+    pub fn detect() -> Self {
+        static LEVEL: OnceLock<SimdLevel> = OnceLock::new();
+        *LEVEL.get_or_init(detect)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn detect() -> SimdLevel {
+    if is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512bw")
+        && is_x86_feature_detected!("avx512vl")
+    {
+        SimdLevel::Avx512
+    } else if is_x86_feature_detected!("avx2") {
+        SimdLevel::Avx2
+    } else if is_x86_feature_detected!("sse4.1") {
+        SimdLevel::Sse41
+    } else {
+        SimdLevel::Portable
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn detect() -> SimdLevel {
+    SimdLevel::Portable
+}

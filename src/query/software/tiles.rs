@@ -1,0 +1,162 @@
+//! Small triangles: the tiles of sixteen are listed at once, and then sampled one after the other.
+//! Loops of few steps, of which nobody can foretell how many, take longer.
+#![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
+
+use super::isa::{ALL, Isa, LANES, Mask, splat_each, store_each, store_each_f};
+use super::large::Triangle;
+use super::layout::{BLOCK_PIXELS, LANE_X, LANE_Y, TILE, TILE_BITS};
+use super::raster::{Ids, addresses, column};
+use super::setup::{Setup, Shading};
+use super::sink::{Id, Sink};
+
+/// The most sample columns or rows of a triangle whose tiles are listed.
+pub(crate) const LISTED_SIDE: i32 = 12;
+/// Room for the tiles of sixteen of those, at most 4 × 4 each since 12 samples meet at most 4 tiles,
+/// and one more register.
+const LISTED: usize = LANES * LANES + LANES;
+/// Which lane it is.
+const LANE_NUMBERS: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
+/// Room to list the tiles of sixteen triangles in, and large triangles that are left for later.
+#[derive(Debug)]
+pub(crate) struct Room {
+    pub(crate) large: Vec<(Triangle, Id)>,
+    /// Of each tile: the edge functions at its first pixel.
+    edges: [[i32; LISTED]; 3],
+    /// Of each: where it lies in the band, and its triangle.
+    tiles: [[i32; LISTED]; 2],
+    /// Of each triangle: from a tile's first pixel to each of its pixels.
+    across: [[[i32; LANES]; 3]; LANES],
+    limit: [[i32; LANES]; 3],
+    /// As [`Shading`] has it, in its order.
+    shading: [[f32; LANES]; 6],
+}
+
+impl Default for Room {
+    fn default() -> Self {
+        Self {
+            large: Vec::new(),
+            edges: [[0; LISTED]; 3],
+            tiles: [[0; LISTED]; 2],
+            across: [[[0; LANES]; 3]; LANES],
+            limit: [[0; LANES]; 3],
+            shading: [[0.0; LANES]; 6],
+        }
+    }
+}
+
+impl Room {
+    /// Lists the tiles of triangles of at most [`LISTED_SIDE`] a side, one tile of every triangle a
+    /// step. `setup` is that of their first tiles. Returns how many there are.
+    #[inline(always)]
+    fn list<I: Isa>(
+        &mut self,
+        setup: &Setup<I>,
+        lanes: Mask,
+        first: [I::I; 2],
+        last: [I::I; 2],
+        (first_row, blocks): (i32, usize),
+    ) -> usize {
+        let lane_numbers = I::load(&LANE_NUMBERS);
+        let tile_x = I::shift_right::<TILE_BITS>(first[0]);
+        let tile_y = I::shift_right::<TILE_BITS>(first[1]);
+        let none = I::splat(-1);
+        let columns = I::sub(I::shift_right::<TILE_BITS>(last[0]), tile_x);
+        let lines = I::sub(I::shift_right::<TILE_BITS>(last[1]), tile_y);
+        let (columns, lines) = (I::blend(lanes, none, columns), I::blend(lanes, none, lines));
+        // From a tile's first pixel to its greatest, and from tile to tile.
+        let (mut row_edge, mut limit) = (setup.edge, setup.limit);
+        let (mut step_x, mut step_y) = (setup.step_x, setup.step_y);
+        for k in 0..3 {
+            let zero = I::splat(0);
+            let reach = I::add(I::max(step_x[k], zero), I::max(step_y[k], zero));
+            let reach = I::add(reach, I::shift_left::<1>(reach));
+            limit[k] = I::sub(limit[k], reach);
+            step_x[k] = I::shift_left::<TILE_BITS>(step_x[k]);
+            step_y[k] = I::shift_left::<TILE_BITS>(step_y[k]);
+        }
+        let row = I::sub(I::shift_left::<TILE_BITS>(tile_y), I::splat(first_row));
+        let column = I::shift_left::<TILE_BITS>(tile_x);
+        let (mut count, mut dy) = (0, 0);
+        loop {
+            let in_row = I::gt(lines, I::splat(dy - 1));
+            if in_row == 0 {
+                return count;
+            }
+            let (mut edge, mut dx) = (row_edge, 0);
+            loop {
+                let in_box = in_row & I::gt(columns, I::splat(dx - 1));
+                if in_box == 0 {
+                    break;
+                }
+                let met =
+                    in_box & I::gt(edge[0], limit[0]) & I::gt(edge[1], limit[1]) & I::gt(edge[2], limit[2]);
+                let x = I::add(column, I::splat(dx * TILE));
+                let y = I::add(row, I::splat(dy * TILE));
+                for k in 0..3 {
+                    put(&mut self.edges[k], count, I::store(I::compress(met, edge[k])));
+                    edge[k] = I::add(edge[k], step_x[k]);
+                }
+                let at = addresses::<I>(x, y, blocks);
+                put(&mut self.tiles[0], count, I::store(I::compress(met, at)));
+                put(&mut self.tiles[1], count, I::store(I::compress(met, lane_numbers)));
+                count += met.count_ones() as usize;
+                dx += 1;
+            }
+            for k in 0..3 {
+                row_edge[k] = I::add(row_edge[k], step_y[k]);
+            }
+            dy += 1;
+        }
+    }
+
+    /// Rasterises triangles of at most [`LISTED_SIDE`] a side: lists the tiles of all, and then goes
+    /// through them.
+    #[inline(always)]
+    pub(crate) fn rasterise<I: Isa, S: Sink>(
+        &mut self,
+        setup: &Setup<I>,
+        mut lanes: Mask,
+        first: [I::I; 2],
+        last: [I::I; 2],
+        ids: Ids<'_>,
+        sink: &mut S,
+    ) {
+        let rows = sink.rows();
+        let count = self.list::<I>(setup, lanes, first, last, (rows.first, rows.blocks));
+        let (lane_x, lane_y) = (I::load(&LANE_X), I::load(&LANE_Y));
+        let (step_x, step_y) = (store_each::<I, 3>(setup.step_x), store_each::<I, 3>(setup.step_y));
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            for k in 0..3 {
+                let (x, y) = (I::splat(step_x[k][lane]), I::splat(step_y[k][lane]));
+                self.across[lane][k] = I::store(I::add(I::mul(lane_x, x), I::mul(lane_y, y)));
+            }
+        }
+        self.limit = store_each::<I, 3>(setup.limit);
+        let Shading { inverse_area, base, along_1, along_2, least, greatest } = setup.shading;
+        self.shading = store_each_f::<I, 6>([inverse_area, base, along_1, along_2, least, greatest]);
+        for i in 0..count.min(LISTED) {
+            let (at, lane) = (self.tiles[0][i] as usize, self.tiles[1][i] as usize % LANES);
+            let (mut e, mut covered) = ([lane_x; 3], ALL);
+            for k in 0..3 {
+                e[k] = I::add(I::splat(self.edges[k][i]), I::load(&self.across[lane][k]));
+                covered &= I::gt(e[k], I::splat(self.limit[k][lane]));
+            }
+            let [inverse_area, base, along_1, along_2, least, greatest] =
+                splat_each::<I, 6>(column(&self.shading, lane));
+            let shading = Shading::<I> { inverse_area, base, along_1, along_2, least, greatest };
+            let nearness = shading.nearness(I::to_f(e[1]), I::to_f(e[2]));
+            sink.tile::<I>(at / BLOCK_PIXELS, at / LANES % LANES, covered, nearness, ids.of(lane));
+        }
+    }
+}
+
+/// Writes sixteen at a place of a list.
+#[inline(always)]
+fn put(list: &mut [i32; LISTED], at: usize, values: [i32; LANES]) {
+    if let Some(to) = list.get_mut(at..at + LANES) {
+        to.copy_from_slice(&values);
+    }
+}
