@@ -233,6 +233,7 @@ mod tests {
     fn cleared(width: u32, height: u32) -> (Depth, HiZ) {
         let (mut depth, mut hi_z) = (Depth::default(), HiZ::default());
         depth.reset(width, height, 0.0);
+        depth.settle();
         hi_z.reset(&depth, 0.0);
         (depth, hi_z)
     }
