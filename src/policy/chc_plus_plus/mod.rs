@@ -114,7 +114,7 @@ impl Default for ChcPlusPlus {
             p_keep: KeepRule::Measured,
             d_max: 3,
             s_max: 1.4,
-            virtual_leaf: 4,
+            virtual_leaf: 2,
             coherence: Coherence::default(),
             queues: Queues::default(),
             volume: TightVolume::default(),
