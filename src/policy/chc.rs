@@ -24,7 +24,7 @@
 //! - A threshold of visible samples ([`Tradeoff`](crate::Tradeoff)) makes questions count
 //!   ([`Want::Dual`]).
 
-use super::coherence::{Coherence, Look, Step, term_of};
+use super::coherence::{Coherence, Look, Step, Terms};
 use super::front::Front;
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
@@ -126,7 +126,8 @@ impl Policy for Chc {
             self.coherence.found_hidden(cx, front.node);
             return;
         }
-        self.coherence.found_visible(cx, front.node, term_of(answer, self.n_av));
+        let terms = Terms { leaf: self.n_av, inner: 0 };
+        self.coherence.found_visible(cx, front.node, terms.after(answer));
         if !was_visible {
             self.coherence.take_as_visible(cx, front);
         }
@@ -170,7 +171,7 @@ impl Chc {
         match Question::new(&cx.tree.query_box(front.node), cx.view) {
             Question::Outside => {}
             Question::Visible => {
-                self.coherence.found_visible(cx, front.node, 0);
+                self.coherence.found_visible(cx, front.node, Terms::NONE);
                 self.coherence.take_as_visible(cx, front);
             }
             Question::Ask(proxy) => {

@@ -1,9 +1,10 @@
 //! What CHC and CHC++ have in common: a walk from front to back that opens what was visible in the
 //! last frame, and a memory that answers change.
 //!
-//! *Pull-up.* An opened node is visible if something below it is; else it was hidden as a whole, and
-//! is asked about as one in the next frame. The papers write it upward from each answer
-//! (`PullUpVisibility`); done once, from the deepest opened node up, it comes to the same.
+//! *Pull-up.* An opened node is visible if something below it is, or if its own answer in this frame
+//! said so; else it was hidden as a whole, and is asked about as one in the next frame. The papers
+//! write it upward from each answer (`PullUpVisibility`); done once, from the deepest opened node up,
+//! it comes to the same.
 
 use std::collections::VecDeque;
 
@@ -38,6 +39,13 @@ pub(super) enum Look {
     TakeAsVisible,
     /// Its question is due. A leaf that was visible in the last frame is drawn all the same.
     Ask { was_visible: bool },
+}
+
+/// Frames for which a node that was found visible is taken as such.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Terms {
+    pub(super) leaf: u32,
+    pub(super) inner: u32,
 }
 
 /// What the policy does next.
@@ -119,9 +127,10 @@ impl Coherence {
         }
     }
 
-    /// Remembers that a node was asked about, or met the near plane, and is visible; it is assumed to
-    /// stay so for `term` frames.
-    pub(super) fn found_visible(&mut self, cx: &Context<'_>, node: NodeId, term: u32) {
+    /// Remembers that a node was asked about, or met the near plane, and is visible. For so many frames
+    /// after this one a leaf goes unasked, and an inner node is not hidden for what is below it.
+    pub(super) fn found_visible(&mut self, cx: &Context<'_>, node: NodeId, terms: Terms) {
+        let term = if self.is_leaf(cx, node) { terms.leaf } else { terms.inner };
         let state = self.history.entry(node);
         (state.asked_at, state.streak) = (cx.frame, state.streak.saturating_add(1));
         state.skip_until = cx.frame.saturating_add(term);
@@ -140,7 +149,8 @@ impl Coherence {
                 let state = self.history.get(child);
                 state.frame == cx.frame && state.visible
             };
-            if !cx.tree.children(node).into_iter().flatten().any(is_visible) {
+            let may_be_hidden = cx.frame > self.history.get(node).skip_until;
+            if may_be_hidden && !cx.tree.children(node).into_iter().flatten().any(is_visible) {
                 self.history.entry(node).visible = false;
                 hidden(node);
             }
@@ -174,7 +184,12 @@ impl Coherence {
     }
 }
 
-/// Frames for which a visible answer is trusted: a lost one is no answer.
-pub(super) fn term_of(answer: Answer<'_>, term: u32) -> u32 {
-    if matches!(answer, Answer::Unknown) { 0 } else { term }
+impl Terms {
+    /// No frame but the one that it was found in.
+    pub(super) const NONE: Self = Self { leaf: 0, inner: 0 };
+
+    /// After an answer: a lost one is not to be trusted.
+    pub(super) fn after(self, answer: Answer<'_>) -> Self {
+        if matches!(answer, Answer::Unknown) { Self::NONE } else { self }
+    }
 }

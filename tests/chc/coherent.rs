@@ -173,13 +173,14 @@ fn straddlers_that_stay_in_an_inner_node_are_drawn_when_it_opens() {
     let (mut script, mut chc) = (Script::new(binary, &boxes), chc());
     let first = script.frame(&mut chc, &["01234", "01", "0"]);
     assert_eq!(first, "ask 01234, wait, draw 01234, ask 01, ask 23, wait, ask 0, ask 1, wait, draw 0");
-    // Only the straddler is left to see: nothing below the root is, so it is asked about in every
-    // frame, as a leaf would be; and never without its straddler.
+    // Only the straddler is left to see: nothing below the root is, so it is asked about. Its own
+    // answer keeps it open for one frame more. It is never without its straddler.
     let visible = &["01234"];
     assert_eq!(script.frame(&mut chc, visible), "draw 01234, ask 0, draw 0, ask 1, ask 23, wait");
     for _ in 0..3 {
         let told = script.frame(&mut chc, visible);
         assert_eq!(told, "ask 01234, wait, draw 01234, ask 01, ask 23, wait");
+        assert_eq!(script.frame(&mut chc, visible), "draw 01234, ask 01, ask 23, wait");
     }
 }
 

@@ -84,7 +84,7 @@ fn a_lost_multiquery_draws_them_all() {
 /// What was seen counts, and not the formula, once there is something.
 #[test]
 fn p_keep_is_measured() {
-    // In turns: when 23 has been hidden for two frames, it always becomes visible.
+    // In turns: 23 never stays hidden for longer than two frames.
     let sight = |frame: usize| match frame % 3 {
         0 => &["01234567", "0123", "01", "0", "23", "2"][..],
         _ => ZERO,
@@ -95,17 +95,31 @@ fn p_keep_is_measured() {
     for frame in 0..60 {
         let told = script.frame(&mut policy, sight(frame));
         failed.push(counter(&policy, "failed_multiqueries"));
-        // That is learnt: i = 1 is safe, and i = 2 is not.
-        match frame % 3 {
-            0 if frame >= 12 => {
-                assert!(told.starts_with("draw 0, ask 1+4567, ask 23, ask 0, wait, ask 2"), "{told}")
-            }
-            2 if frame >= 12 => assert_eq!(told, "draw 0, ask 1+23+4567, ask 0, wait"),
-            _ => {}
+        // That is learnt: what has been hidden for as long as 23 is asked about alone.
+        if frame >= 12 && frame % 3 == 0 {
+            assert!(told.starts_with("draw 0, ask 1+4567, ask 23, ask 0, wait, "), "{told}");
         }
     }
-    assert!(failed[..12].contains(&1), "at first in vain: {failed:?}");
+    assert!(failed[..12].iter().any(|&failed| failed > 0), "at first in vain: {failed:?}");
     assert!(failed[12..].iter().all(|&failed| failed == 0), "{failed:?}");
+}
+
+/// Something is seen of a node's box, and nothing of the boxes below it: left closed, it would fail
+/// the others' question again and again.
+#[test]
+fn a_node_that_was_opened_in_vain_stays_open() {
+    let (mut script, mut policy) = after(4, ZERO);
+    policy.n_av = 3;
+    let corner = &["01234567", "0123", "01", "0", "23"];
+    let told = script.frame(&mut policy, corner);
+    let expected = "draw 0, ask 1+23+4567, ask 0, wait, ask 1, ask 23, ask 4567, wait, ask 2, ask 3, wait";
+    assert_eq!(told, expected);
+    for i in 0..3 {
+        let told = script.frame(&mut policy, corner);
+        assert!(told.starts_with("draw 0, ask 1+4567") && !told.contains("23,"), "{i}: {told}");
+    }
+    let told = script.frame(&mut policy, corner);
+    assert!(told.contains("23"), "then it is asked about as one again: {told}");
 }
 
 /// A multiquery under a threshold asks for a single sample; alone, the nodes are counted.

@@ -29,6 +29,8 @@
 //!   with it.
 //! - Nodes of a failed multiquery join the i-queue instead of being asked about at once: another
 //!   batch, not another change of state.
+//! - An inner node may be visible, and nothing below it. As published it is then asked about in every
+//!   second frame, and its children in between. With multiqueries it stays open for `n_av` frames.
 //! - Below a leaf, tight volumes go on to the boxes of its objects; nothing need be built deeper.
 //! - A question that counts ([`Want::Dual`]) is about one box. With a threshold of visible samples,
 //!   volumes are not tight, and multiqueries ask, as ever, whether a single sample is visible; the
@@ -45,7 +47,7 @@ pub use multiquery::KeepRule;
 use std::ops::Range;
 
 use super::chc::IN_FLIGHT;
-use super::coherence::{Coherence, Look, Step, term_of};
+use super::coherence::{Coherence, Look, Step, Terms};
 use super::front::Front;
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
@@ -265,7 +267,7 @@ impl ChcPlusPlus {
         let boxes = match self.boxes(cx, front.node) {
             Boxes::Outside => return,
             Boxes::Near => {
-                self.coherence.found_visible(cx, front.node, 0);
+                self.coherence.found_visible(cx, front.node, Terms::NONE);
                 return self.coherence.take_as_visible(cx, front);
             }
             Boxes::Ask(boxes) => boxes,
@@ -337,8 +339,10 @@ impl ChcPlusPlus {
 
     fn found_visible(&mut self, cx: &Context<'_>, front: Front, was_visible: bool, answer: Answer<'_>) {
         let sampling = Sampling { n_av: self.n_av, randomised: self.randomised };
-        let term = term_of(answer, sampling.term(front.node, cx.frame, !was_visible));
-        self.coherence.found_visible(cx, front.node, term);
+        let leaf = sampling.term(front.node, cx.frame, !was_visible);
+        // Its children cost little in the questions of others; it alone would spoil them, over and over.
+        let inner = if self.multiqueries { self.n_av.saturating_sub(1) } else { 0 };
+        self.coherence.found_visible(cx, front.node, Terms { leaf, inner }.after(answer));
         if !was_visible {
             self.coherence.take_as_visible(cx, front);
         }
