@@ -97,7 +97,7 @@ impl Script {
             tradeoff: &self.tradeoff,
             costs: Costs::default(),
         };
-        let (mut told, mut open) = (String::new(), Vec::new());
+        let (mut told, mut open, mut steps) = (String::new(), Vec::new(), 0);
         let mut tell = |what: &str| write!(told, "{}{what}", if told.is_empty() { "" } else { ", " });
         policy.begin(&cx);
         loop {
@@ -128,6 +128,8 @@ impl Script {
                 Action::DrawObjects(_) => panic!("these policies draw nodes"),
             };
             tell(&line).expect("a string takes everything");
+            steps += 1;
+            assert!(steps < 1000, "a frame comes to its end");
             if self.arrival == Arrival::Backwards {
                 arrived.reverse();
             }
