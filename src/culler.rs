@@ -215,30 +215,34 @@ impl<P> Voter for Culler<P> {
     }
 }
 
-/// The questions of a frame that have no answer yet, numbered through the frame for the backend.
+/// The questions of a frame that have no answer yet, numbered for the backend: from frame to frame,
+/// so that an answer which comes after its frame is not taken for that to another question.
 #[derive(Debug, Default)]
 struct OpenQuestions {
-    /// By the backend's number: the policy's own ticket, until it is answered.
+    /// By the backend's number, less the frame's first: the policy's own ticket, until it is answered.
     asked: Vec<Option<Ticket>>,
+    /// The number of the frame's first question.
+    base: u32,
     /// All before this are answered.
     first: usize,
 }
 
 impl OpenQuestions {
     fn clear(&mut self) {
+        self.base = self.base.wrapping_add(self.asked.len() as u32);
         self.asked.clear();
         self.first = 0;
     }
 
     fn ask(&mut self, ticket: Ticket) -> Ticket {
         self.asked.push(Some(ticket));
-        Ticket(self.asked.len() as u32 - 1)
+        Ticket(self.base.wrapping_add(self.asked.len() as u32 - 1))
     }
 
     /// The policy's ticket of an answer that it waits for; none for one that comes twice, or is
     /// to no question of this frame.
     fn close(&mut self, ticket: Ticket) -> Option<Ticket> {
-        self.asked.get_mut(ticket.0 as usize)?.take()
+        self.asked.get_mut(ticket.0.wrapping_sub(self.base) as usize)?.take()
     }
 
     /// Those that should have been answered by now, and were not.

@@ -60,6 +60,8 @@
 //! | skipping questions by their worth | `policy/skip.rs` | ours |
 //! | dual query, overlap-ordered waves | `policy/dual_query.rs`, `policy/order.rs` | Kovalčík and Tobola 2005 |
 //! | statistically optimised queries | `policy/statistical.rs` | Kovalčík and Sochor 2005 |
+//! | CHC | `policy/chc.rs`, `policy/coherence.rs` | Bittner et al. 2004 |
+//! | CHC++: queues, multiqueries, tight volumes | `policy/chc_plus_plus/` | Mattausch et al. 2008 |
 //! | stop-and-wait, OPT, REF | `policy/stop_and_wait.rs`, `policy/recorded.rs` | Bittner et al. 2004, Mattausch et al. 2008, Lee et al. 2021 |
 //! | conservative box proxy | `geom/proxy.rs` | its proof is in the module |
 //! | exact software rasteriser and counts | `query/software/` | |
@@ -87,7 +89,7 @@ pub use costs::Costs;
 pub use culler::{Culler, Holder, Voter, Why};
 pub use dial::{Dial, DialKind};
 pub use error::Error;
-pub use stats::FrameStats;
+pub use stats::{Counter, FrameStats};
 pub use tradeoff::Tradeoff;
 
 /// The README's programs compile; that which needs no GPU runs.

@@ -2,12 +2,17 @@
 //! everything changes every frame, each frame against the exact oracle. Each suite also asserts
 //! that hidden things were culled, so that a policy that draws everything cannot pass.
 
+#[path = "support/faulty.rs"]
+mod faulty;
 mod support;
+#[path = "support/trusting.rs"]
+mod trusting;
 
+use faulty::Faulty;
 use rayon::prelude::*;
 use support::lying::Lying;
 use support::stage::Stage;
-use support::suite::{FRAMES, SCREEN, assert_culls_most, culls_hidden, dialled, is_default, outcome};
+use support::suite::{FRAMES, SCREEN, assert_culls_most, culls_hidden, dialled, is_default, outcome, trees};
 use support::{Outcome, run};
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
@@ -15,6 +20,7 @@ use tercet::policy;
 use tercet::query::software::SoftwareQueries;
 use tercet::tree::TreeConfig;
 use tercet::worlds::{self, Model, Pathology};
+use trusting::Trusting;
 
 #[test]
 fn random_worlds() {
@@ -102,7 +108,7 @@ fn scatter(model: &mut Model, fallback: &tercet::scene::mesh::Mesh) {
 /// Whole pictures: what is not drawn leaves no trace, down to the bits of the depth buffer.
 #[test]
 fn frames_equal_those_without_culling() {
-    for name in ["dual-query", "statistical", "stop-and-wait"] {
+    for name in ["dual-query", "statistical", "chc", "chc++", "stop-and-wait"] {
         for seed in 0..4 {
             let mut stage = Stage::new(worlds::random(seed, 120), seed, Viewport::new(301, 203), false);
             stage.detail = Detail::FULL;
@@ -112,6 +118,41 @@ fn frames_equal_those_without_culling() {
             assert_eq!(outcome.wrong_pixels, 0, "{name}, world {seed}");
             assert!(outcome.culled > 0);
         }
+    }
+}
+
+/// Answers that are late, lost, doubled and out of order cost culling, and no object.
+#[test]
+fn answers_that_go_astray_lose_nothing() {
+    for &name in policy::NAMES {
+        let outcomes: Vec<Outcome> = (0..24u64)
+            .into_par_iter()
+            .map(|seed| {
+                let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+                let tree = trees()[seed as usize % trees().len()].clone();
+                let outcome = run(&mut stage, tree, dialled(name, seed), &mut Faulty::new(seed), FRAMES);
+                assert_eq!(outcome.lost, 0, "{name} lost an object in random world {seed}");
+                outcome
+            })
+            .collect();
+        let culled: usize = outcomes.iter().map(|outcome| outcome.culled).sum();
+        assert!(culled > 0 || !culls_hidden(name), "{name} culled nothing that was hidden");
+    }
+}
+
+/// A policy that culls what was hidden in the last frame must be found out.
+#[test]
+fn trust_in_old_answers_is_found_out() {
+    for (name, dials) in [("chc", &[][..]), ("chc++", &["tight", "multiqueries"])] {
+        let mut all = Outcome::default();
+        for seed in 0..4 {
+            let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+            let mut policy = policy::by_name(name).expect("a policy of that name");
+            dials.iter().for_each(|key| policy.set(key, "false").expect("a switch of that name"));
+            let (tree, mut queries) = (TreeConfig::default(), SoftwareQueries::new());
+            all.add(run(&mut stage, tree, Trusting::new(policy), &mut queries, FRAMES));
+        }
+        assert!(all.lost > 0 && all.wrong_pixels > 0, "{name}: {all:?}");
     }
 }
 

@@ -121,7 +121,7 @@ fn what_hides_nothing_is_drawn_last_and_what_is_never_culled_always() {
     world.insert_one(sky, NeverCull).unwrap();
     let mut scene = Scene::new(SceneConfig::default());
     scene.sync(&world);
-    for name in ["dual-query", "statistical", "stop-and-wait", "frustum", "none"] {
+    for name in ["dual-query", "statistical", "chc", "chc++", "stop-and-wait", "frustum", "none"] {
         let mut eye = Culler::new(policy::by_name(name).unwrap());
         for _ in 0..3 {
             frame(&mut eye, &scene, &world, &mesh);
@@ -236,7 +236,7 @@ fn what_an_answer_was_lost_for_is_drawn() {
     let tree = TreeConfig { unasked_leaf: 2, ..TreeConfig::default() };
     let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
     scene.sync(&world);
-    for name in ["dual-query", "statistical", "stop-and-wait"] {
+    for name in ["dual-query", "statistical", "chc", "chc++", "stop-and-wait"] {
         for (fault, drawn) in [(Fault::Unknown, 51), (Fault::Silent, 51), (Fault::Twice, 1)] {
             let mut queries = Broken::new(true, fault);
             let mut eye = Culler::new(policy::by_name(name).unwrap());

@@ -5,6 +5,9 @@
 //! ([`Culler`](crate::Culler)) carries it out on whatever backend there is. So each policy runs on
 //! each backend, is tested without one, and a recorded frame replays bit for bit.
 
+mod chc;
+mod chc_plus_plus;
+mod coherence;
 mod dual_query;
 mod fate;
 mod front;
@@ -17,6 +20,8 @@ mod skip;
 mod statistical;
 mod stop_and_wait;
 
+pub use chc::Chc;
+pub use chc_plus_plus::{ChcPlusPlus, KeepRule};
 pub use dual_query::{DualQuery, Order};
 pub use fate::{Fate, Samples};
 pub use frustum::FrustumOnly;
@@ -33,7 +38,7 @@ use crate::geom::{Frustum, Proxy, View};
 use crate::query::{Answer, Ticket, Want};
 use crate::scene::ObjectId;
 use crate::tree::{NodeId, Tree, Votes};
-use crate::{Costs, Error, Tradeoff};
+use crate::{Costs, Counter, Error, Tradeoff};
 
 /// What a policy may look at.
 #[derive(Clone, Copy, Debug)]
@@ -126,6 +131,12 @@ pub trait Policy: Send + Sync {
         Fate::Unknown
     }
 
+    /// What it counted of the last frame, for statistics: the same keys every frame, zeros
+    /// included. Nothing is put together until somebody asks.
+    fn counters(&self) -> Vec<Counter> {
+        Vec::new()
+    }
+
     /// What it must be given before each frame, if it is a reference ([`Recorded`]).
     fn wants_recorded(&self) -> Option<Recording> {
         None
@@ -185,6 +196,10 @@ impl Policy for Box<dyn Policy> {
         (**self).fate(cx, node)
     }
 
+    fn counters(&self) -> Vec<Counter> {
+        (**self).counters()
+    }
+
     fn wants_recorded(&self) -> Option<Recording> {
         (**self).wants_recorded()
     }
@@ -203,7 +218,8 @@ impl Policy for Box<dyn Policy> {
 }
 
 /// The names that [`by_name`] knows.
-pub const NAMES: &[&str] = &["none", "frustum", "statistical", "dual-query", "stop-and-wait", "opt", "exact"];
+pub const NAMES: &[&str] =
+    &["none", "frustum", "statistical", "dual-query", "chc", "chc++", "stop-and-wait", "opt", "exact"];
 
 /// A policy by the name that `--policy` takes, with its default dials.
 ///
@@ -214,6 +230,8 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "none" => Box::new(DrawAll::default()),
         "frustum" => Box::new(FrustumOnly::default()),
         "dual-query" => Box::new(DualQuery::default()),
+        "chc" => Box::new(Chc::default()),
+        "chc++" => Box::new(ChcPlusPlus::default()),
         "statistical" => Box::new(Statistical::default()),
         "stop-and-wait" => Box::new(StopAndWait::default()),
         "opt" => Box::new(Recorded::new(Recording::StopAndWait)),

@@ -12,7 +12,7 @@ use crate::geom::{Proxy, View};
 use crate::scene::ObjectSet;
 
 /// Names a question until it is answered. A policy's tickets are unique among its open questions;
-/// the driver numbers them anew, so that a backend's are unique within a frame.
+/// the driver numbers them anew, so that a backend's are unique, from frame to frame as well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Ticket(pub u32);
 

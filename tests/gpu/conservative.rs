@@ -92,14 +92,15 @@ fn policy(name: &str) -> Box<dyn Policy> {
 /// for any.
 fn runs(gpu: &Gpu) -> Vec<(GpuConfig, &'static [&'static str], u64)> {
     let default = GpuConfig::default();
-    let all: &[_] = &["dual-query", "dual-query, visible-first", "statistical", "stop-and-wait"];
+    let all: &[_] =
+        &["dual-query", "dual-query, visible-first", "statistical", "chc", "chc++", "stop-and-wait"];
     let mut runs = vec![(default.clone(), all, 5)];
     for counting in supported(gpu) {
         let config = GpuConfig { counting: Some(counting), ..default.clone() };
         runs.push((config, &["dual-query", "statistical"], 4));
     }
     let native = GpuConfig { any: AnyBy::Native, ..default };
-    runs.push((native, &["statistical", "stop-and-wait"], 5));
+    runs.push((native, &["statistical", "chc++", "stop-and-wait"], 5));
     runs
 }
 
@@ -125,7 +126,9 @@ fn random_worlds() {
                 let least = 100 * worlds as usize;
                 assert!(all.hidden.min(all.visible) > least, "there are things to hide: {all:?}");
                 assert!(all.culled * 3 > all.hidden, "{run} culled little: {all:?}");
-                assert!(all.extra_submits <= 0, "{run} submits more than once a wave: {all:?}");
+                // CHC looks for answers while it walks: that is a submission, too.
+                let looks = name.starts_with("chc");
+                assert!(looks || all.extra_submits <= 0, "{run} submits more than once a wave: {all:?}");
             }
         }
     }

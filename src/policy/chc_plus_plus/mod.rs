@@ -1,0 +1,358 @@
+//! *CHC++*: Mattausch, Bittner & Wimmer, *CHC++: Coherent Hierarchical Culling Revisited* (2008).
+//!
+//! As [`Chc`](super::Chc), with fewer questions and far fewer changes between drawing and asking.
+//! Each optimisation has a switch of its own:
+//!
+//! | | switch | file |
+//! |---|---|---|
+//! | nodes that were hidden are asked about in batches of `b`, visible leaves while others' answers are awaited | `batching` | `queues` |
+//! | the first question about a leaf that turned visible comes after a random time | `randomised` | `sampling` |
+//! | questions are about the boxes of descendants | `tight` | `tight` |
+//! | several hidden nodes are asked about in one question | `multiqueries` | `multiquery` |
+//!
+//! With all of them off it does as CHC does, but that it asks about a visible leaf every `n_av`
+//! frames, and CHC in the frame after `n_av` (both as published). So the published ablation (CHC,
+//! +B, +R, +TB, +MQ) is one switch more at a time.
+//!
+//! Conservative, as CHC is: what was hidden is asked about in every frame. An answer that finds
+//! nothing visible of several nodes hides them all; one that finds something visible says nothing of
+//! any of them, and they are asked about one by one, with the next batch. A lost answer draws them
+//! all.
+//!
+//! *Votes.* None, as CHC: see there.
+//!
+//! # Where we differ
+//!
+//! - The v-queue is issued when nothing is left to walk to, in one go with the last batch: both are
+//!   one submission on a device. The paper issues leaf by leaf whenever an answer has not arrived yet,
+//!   and leaves the last answers to the next frame. Here they are awaited: a frame's questions end
+//!   with it.
+//! - Nodes of a failed multiquery join the i-queue instead of being asked about at once: another
+//!   batch, not another change of state.
+//! - An inner node may be visible, and nothing below it. As published it is then asked about in every
+//!   second frame, and its children in between. With multiqueries it stays open for `n_av` frames.
+//! - Below a leaf, tight volumes go on to the boxes of its objects; nothing need be built deeper.
+//! - A question that counts ([`Want::Dual`]) is about one box. With a threshold of visible samples,
+//!   volumes are not tight, and multiqueries ask, as ever, whether a single sample is visible; the
+//!   threshold decides about single nodes.
+
+mod multiquery;
+mod queues;
+mod sampling;
+mod spells;
+mod tight;
+
+pub use multiquery::KeepRule;
+
+use std::ops::Range;
+
+use super::chc::IN_FLIGHT;
+use super::coherence::{Coherence, Look, Step, Terms};
+use super::front::Front;
+use super::{Action, Answer, Context, Fate, Policy, Ticket};
+use crate::dial::{self, Dial};
+use crate::geom::Question;
+use crate::query::{Wait, Want};
+use crate::tree::NodeId;
+use crate::{Counter, Error};
+use multiquery::KeepRate;
+use queues::{Queues, Waiting};
+use sampling::Sampling;
+use spells::Spells;
+use tight::{Limits, TightVolume};
+
+const KEEP_RULES: &[(&str, KeepRule)] = &[("measured", KeepRule::Measured), ("analytic", KeepRule::Analytic)];
+
+/// See the module's documentation.
+#[derive(Clone, Debug)]
+pub struct ChcPlusPlus {
+    /// Frames from one question about a visible leaf to the next; 0 counts as 1.
+    pub n_av: u32,
+    /// Hidden nodes a batch; 0 counts as 1.
+    pub b: u32,
+    /// Whether questions go out in batches.
+    pub batching: bool,
+    /// Whether the first question about a leaf that turned visible comes after a random time.
+    pub randomised: bool,
+    /// Whether questions are about the boxes of descendants.
+    pub tight: bool,
+    /// Whether several hidden nodes are asked about in one question. It takes batches.
+    pub multiqueries: bool,
+    /// Where the probability comes from that a hidden node stays hidden.
+    pub p_keep: KeepRule,
+    /// Levels to which tight volumes go down.
+    pub d_max: u32,
+    /// The surface of a tight volume's boxes, to the surface of the node's box, at most.
+    pub s_max: f32,
+    /// Objects up to which an inner node is treated as a leaf, where volumes are tight.
+    pub virtual_leaf: u32,
+    coherence: Coherence,
+    queues: Queues,
+    volume: TightVolume,
+    spells: Spells,
+    rate: KeepRate,
+    /// Questions asked since answers were last looked for.
+    unseen: u32,
+    counts: Counts,
+}
+
+/// What is counted in a frame.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    batches: u32,
+    multiqueries: u32,
+    failed: u32,
+}
+
+impl Default for ChcPlusPlus {
+    fn default() -> Self {
+        Self {
+            n_av: 10,
+            b: 50,
+            batching: true,
+            randomised: true,
+            tight: true,
+            multiqueries: true,
+            p_keep: KeepRule::Measured,
+            d_max: 3,
+            s_max: 1.4,
+            virtual_leaf: 2,
+            coherence: Coherence::default(),
+            queues: Queues::default(),
+            volume: TightVolume::default(),
+            spells: Spells::default(),
+            rate: KeepRate::default(),
+            unseen: 0,
+            counts: Counts::default(),
+        }
+    }
+}
+
+impl Policy for ChcPlusPlus {
+    fn name(&self) -> &'static str {
+        "chc++"
+    }
+
+    fn needs_blocking(&self) -> bool {
+        true
+    }
+
+    fn begin(&mut self, cx: &Context<'_>) {
+        self.coherence.virtual_leaf = if self.tight { self.virtual_leaf } else { 0 };
+        self.coherence.begin(cx);
+        self.queues.begin();
+        self.unseen = 0;
+        self.counts = Counts::default();
+    }
+
+    fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
+        loop {
+            match self.coherence.step() {
+                Some(Step::Draw(node, extent)) => return Action::Draw(node, extent),
+                Some(Step::Ask(question)) => {
+                    let boxes = self.queues.boxes(question);
+                    let counts = cx.tradeoff.visible_pixels > 0 && boxes.len() == 1;
+                    let want = if counts { Want::Dual } else { Want::Any };
+                    return Action::Ask { ticket: Ticket(question as u32), boxes, want };
+                }
+                None => {}
+            }
+            let enough = if self.batching { 1 } else { IN_FLIGHT };
+            if self.unseen >= enough && !self.coherence.is_at_end() {
+                self.unseen = 0;
+                return Action::Wait(Wait::Poll);
+            }
+            if let Some(front) = self.coherence.pop() {
+                self.look_at(cx, front);
+            } else if self.issue_batch() || self.issue_visible() {
+                // They are asked next.
+            } else if self.queues.is_open() {
+                self.unseen = 0;
+                return Action::Wait(Wait::Block);
+            } else {
+                self.coherence.pull_up(cx, |node| self.spells.is_hidden(node, cx.frame));
+                return Action::Done;
+            }
+        }
+    }
+
+    fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
+        let Some(asked) = self.queues.close(ticket) else { return };
+        let visible = answer.is_visible(cx.tradeoff.visible_pixels);
+        let lost = matches!(answer, Answer::Unknown);
+        let failed = visible && !lost && asked.nodes.len() > 1;
+        self.counts.failed += u32::from(failed);
+        for node in asked.nodes {
+            let node = self.queues.node(node).clone();
+            if failed {
+                self.queues.wait_invisible(Waiting { p_keep: 0.0, ..node });
+                continue;
+            }
+            if !asked.was_visible && !lost {
+                self.rate.saw(node.hidden_for, !answer.is_visible(0));
+            }
+            if visible {
+                self.found_visible(cx, node.front, asked.was_visible, answer);
+            } else {
+                self.found_hidden(cx, node.front.node, answer);
+            }
+        }
+    }
+
+    fn reset(&mut self) {
+        self.coherence.reset();
+        self.spells.clear();
+    }
+
+    fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
+        self.coherence.fate(cx, node)
+    }
+
+    fn counters(&self) -> Vec<Counter> {
+        let Counts { batches, multiqueries, failed } = self.counts;
+        let own = [("batches", batches), ("multiqueries", multiqueries), ("failed_multiqueries", failed)];
+        let own = own.into_iter().map(|(key, count)| Counter { key, count });
+        own.chain(self.coherence.counters()).collect()
+    }
+
+    fn dials(&self) -> Vec<Dial> {
+        vec![
+            Dial::new("n_av", self.n_av, "frames from one question about a visible leaf to the next"),
+            Dial::new("b", self.b, "hidden nodes a batch"),
+            Dial::new("batching", self.batching, "ask in batches"),
+            Dial::new("randomised", self.randomised, "spread the first questions of what turned visible"),
+            Dial::new("tight", self.tight, "ask about the boxes of descendants"),
+            Dial::new("multiqueries", self.multiqueries, "ask about several hidden nodes in one question"),
+            Dial::choice("p_keep", self.p_keep, KEEP_RULES, "how likely hidden nodes are to stay hidden"),
+            Dial::new("d_max", self.d_max, "levels to which tight volumes go down"),
+            Dial::new("s_max", self.s_max, "surface of a tight volume to that of the node's box, at most"),
+            Dial::new("virtual_leaf", self.virtual_leaf, "objects up to which a node is a leaf, if tight"),
+        ]
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
+        match key {
+            "n_av" => self.n_av = dial::number(key, value, 0..=1000)?,
+            "b" => self.b = dial::number(key, value, 1..=100_000)?,
+            "batching" => self.batching = dial::number(key, value, false..=true)?,
+            "randomised" => self.randomised = dial::number(key, value, false..=true)?,
+            "tight" => self.tight = dial::number(key, value, false..=true)?,
+            "multiqueries" => self.multiqueries = dial::number(key, value, false..=true)?,
+            "p_keep" => self.p_keep = dial::choice(key, value, KEEP_RULES)?,
+            "d_max" => self.d_max = dial::number(key, value, 0..=32)?,
+            "s_max" => self.s_max = dial::number(key, value, 0.0..=1000.0)?,
+            "virtual_leaf" => self.virtual_leaf = dial::number(key, value, 0..=100_000)?,
+            _ => return Err(dial::unknown(key, value, &self.dials())),
+        }
+        Ok(())
+    }
+}
+
+/// What the view says of a node's boxes.
+enum Boxes {
+    /// None can own a sample.
+    Outside,
+    /// One meets the near plane.
+    Near,
+    /// To be asked: those of the frame's proxies.
+    Ask(Range<usize>),
+}
+
+impl ChcPlusPlus {
+    /// Opens or draws a node, or queues its question.
+    fn look_at(&mut self, cx: &Context<'_>, front: Front) {
+        let Look::Ask { was_visible } = self.coherence.look_at(cx, front) else {
+            return self.coherence.take_as_visible(cx, front);
+        };
+        let boxes = match self.boxes(cx, front.node) {
+            Boxes::Outside => return,
+            Boxes::Near => {
+                self.coherence.found_visible(cx, front.node, Terms::NONE);
+                return self.coherence.take_as_visible(cx, front);
+            }
+            Boxes::Ask(boxes) => boxes,
+        };
+        if was_visible {
+            self.queues.wait_visible(Waiting { front, boxes, hidden_for: 0, p_keep: 0.0 });
+            if !self.batching {
+                self.unseen += 1;
+                self.issue_visible();
+            }
+            self.coherence.take_as_visible(cx, front);
+        } else {
+            let hidden_for = self.spells.frames(front.node, cx.frame);
+            let p_keep = if self.multiqueries { self.rate.p_keep(self.p_keep, hidden_for) } else { 0.0 };
+            let waiting = self.queues.wait_invisible(Waiting { front, boxes, hidden_for, p_keep });
+            if !self.batching || waiting >= self.b as usize {
+                self.issue_batch();
+            }
+        }
+    }
+
+    /// The proxies of a node's boxes.
+    fn boxes(&mut self, cx: &Context<'_>, node: NodeId) -> Boxes {
+        // A count is about one box.
+        let d_max = if self.tight && cx.tradeoff.visible_pixels == 0 { self.d_max } else { 0 };
+        let proxies = &mut self.queues.proxies;
+        let first = proxies.len();
+        for aabb in self.volume.of(cx.tree, node, Limits { d_max, s_max: self.s_max }) {
+            match Question::new(&aabb, cx.view) {
+                Question::Outside => {}
+                Question::Visible => {
+                    proxies.truncate(first);
+                    return Boxes::Near;
+                }
+                Question::Ask(proxy) => proxies.push(proxy),
+            }
+        }
+        if proxies.len() > first {
+            return Boxes::Ask(first..proxies.len());
+        }
+        if Question::new(&cx.tree.query_box(node), cx.view) != Question::Outside {
+            // Whoever asks about the node's fate asks about its one box.
+            self.coherence.found_hidden(cx, node);
+        }
+        Boxes::Outside
+    }
+
+    /// Issues the i-queue; false if it is empty.
+    fn issue_batch(&mut self) -> bool {
+        let questions = self.queues.issue_invisible();
+        self.counts.batches += u32::from(!questions.is_empty());
+        let multiqueries = questions.clone().filter(|&question| self.queues.is_multiquery(question));
+        self.counts.multiqueries += multiqueries.count() as u32;
+        self.unseen += questions.len() as u32;
+        self.ask(questions)
+    }
+
+    /// Issues the v-queue; false if it is empty.
+    fn issue_visible(&mut self) -> bool {
+        let questions = self.queues.issue_visible();
+        self.ask(questions)
+    }
+
+    fn ask(&mut self, questions: Range<usize>) -> bool {
+        let any = !questions.is_empty();
+        questions.for_each(|question| self.coherence.ask(question));
+        any
+    }
+
+    fn found_visible(&mut self, cx: &Context<'_>, front: Front, was_visible: bool, answer: Answer<'_>) {
+        let sampling = Sampling { n_av: self.n_av, randomised: self.randomised };
+        let leaf = sampling.term(front.node, cx.frame, !was_visible);
+        // Its children cost little in the questions of others; it alone would spoil them, over and over.
+        let inner = if self.multiqueries { self.n_av.saturating_sub(1) } else { 0 };
+        self.coherence.found_visible(cx, front.node, Terms { leaf, inner }.after(answer));
+        if !was_visible {
+            self.coherence.take_as_visible(cx, front);
+        }
+    }
+
+    fn found_hidden(&mut self, cx: &Context<'_>, node: NodeId, answer: Answer<'_>) {
+        self.coherence.found_hidden(cx, node);
+        // What shows a few samples, fewer than the threshold, would spoil a multiquery.
+        if !answer.is_visible(0) {
+            self.spells.is_hidden(node, cx.frame);
+        }
+    }
+}
