@@ -2,27 +2,33 @@
 //!
 //! The kernels are written in the operations of [`Isa`] and inlined here into functions that may
 //! use wider registers. This is the only file with `unsafe`.
-#![expect(unsafe_code, reason = "instructions, and functions compiled for them, found at run time")]
-
-#[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::*;
+#![cfg_attr(
+    target_arch = "x86_64",
+    expect(unsafe_code, reason = "instructions, and functions compiled for them, found at run time")
+)]
 
 use super::bands::{self, Frame, List};
 use super::count::{self, Scene};
 use super::footprint::{self, Footprint};
 use super::hi_z::{self, Row};
-use super::isa::{Isa, Portable};
-#[cfg(target_arch = "x86_64")]
-use super::isa::{LANES, Mask, TABLE};
+use super::isa::Portable;
 use super::level::SimdLevel;
 use super::pass::DrawCall;
 use super::sink::Sink;
 use super::vertex::Screen;
 use crate::geom::{Proxy, View};
 
-/// Methods of [`Isa`] that are one instruction on one register.
 #[cfg(target_arch = "x86_64")]
-macro_rules! single {
+use x86::{Avx2, Avx512, Sse41};
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::super::isa::{Isa, LANES, Mask, TABLE};
+
+    /// Methods of [`Isa`] that are one instruction on one register.
+    macro_rules! single {
     ($($name:ident($($arg:ident: $type:ty),*) -> $result:ty = $body:expr;)*) => {
         $(
             #[inline(always)]
@@ -35,46 +41,40 @@ macro_rules! single {
     };
 }
 
-/// A bit for each lane, by lane.
-#[cfg(target_arch = "x86_64")]
-const LANE_BITS: [i32; LANES] =
-    [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16_384, 32_768];
+    /// A bit for each lane, by lane.
+    const LANE_BITS: [i32; LANES] =
+        [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16_384, 32_768];
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-#[inline]
-fn greater_256(a: __m256, b: __m256) -> __m256 {
-    _mm256_cmp_ps::<_CMP_GT_OQ>(a, b)
-}
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    fn greater_256(a: __m256, b: __m256) -> __m256 {
+        _mm256_cmp_ps::<_CMP_GT_OQ>(a, b)
+    }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-#[inline]
-fn greater_or_equal_256(a: __m256, b: __m256) -> __m256 {
-    _mm256_cmp_ps::<_CMP_GE_OQ>(a, b)
-}
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    fn greater_or_equal_256(a: __m256, b: __m256) -> __m256 {
+        _mm256_cmp_ps::<_CMP_GE_OQ>(a, b)
+    }
 
-/// An instruction on each of two or four registers.
-#[cfg(target_arch = "x86_64")]
-macro_rules! each {
+    /// An instruction on each of two or four registers.
+    macro_rules! each {
     (2, $f:ident, $($a:ident),*) => { [$f($($a[0]),*), $f($($a[1]),*)] };
     (4, $f:ident, $($a:ident),*) => { [$f($($a[0]),*), $f($($a[1]),*), $f($($a[2]),*), $f($($a[3]),*)] };
 }
 
-/// The sign bits of two or four registers.
-#[cfg(target_arch = "x86_64")]
-macro_rules! mask {
-    (2, $bits:ident, $a:ident) => {
-        ($bits($a[0]) | $bits($a[1]) << 8) as Mask
-    };
-    (4, $bits:ident, $a:ident) => {
-        ($bits($a[0]) | $bits($a[1]) << 4 | $bits($a[2]) << 8 | $bits($a[3]) << 12) as Mask
-    };
-}
+    /// The sign bits of two or four registers.
+    macro_rules! mask {
+        (2, $bits:ident, $a:ident) => {
+            ($bits($a[0]) | $bits($a[1]) << 8) as Mask
+        };
+        (4, $bits:ident, $a:ident) => {
+            ($bits($a[0]) | $bits($a[1]) << 4 | $bits($a[2]) << 8 | $bits($a[3]) << 12) as Mask
+        };
+    }
 
-/// An instruction set with registers of fewer than sixteen lanes: everything is done to several.
-#[cfg(target_arch = "x86_64")]
-macro_rules! several {
+    /// An instruction set with registers of fewer than sixteen lanes: everything is done to several.
+    macro_rules! several {
     (
         $(#[$doc:meta])* $name:ident, $count:tt registers,
         $i:ty, $f:ty,
@@ -85,11 +85,9 @@ macro_rules! several {
         masks [$gt_f:ident, $ge_f:ident, $bits:ident, $blend:ident]
     ) => {
         $(#[$doc])*
-        #[cfg(target_arch = "x86_64")]
-        pub(crate) struct $name;
+                pub(crate) struct $name;
 
-        #[cfg(target_arch = "x86_64")]
-        impl $name {
+                impl $name {
             /// All bits of the lanes where a mask is set.
             #[inline(always)]
             fn expand(mask: Mask) -> [$f; $count] {
@@ -104,8 +102,7 @@ macro_rules! several {
             }
         }
 
-        #[cfg(target_arch = "x86_64")]
-        impl Isa for $name {
+                impl Isa for $name {
             type I = [$i; $count];
             type F = [$f; $count];
 
@@ -320,156 +317,154 @@ macro_rules! several {
     }};
 }
 
-several! {
-    /// [`SimdLevel::Avx2`].
-    Avx2, 2 registers,
-    __m256i, __m256,
-    splat [_mm256_set1_epi32, _mm256_set1_ps],
-    cast [_mm256_castps_si256, _mm256_castsi256_ps, _mm256_cvtepi32_ps],
-    integers [_mm256_add_epi32, _mm256_sub_epi32, _mm256_mullo_epi32, _mm256_min_epi32, _mm256_max_epi32,
-        _mm256_and_si256, _mm256_or_si256],
-    shifts [_mm256_sll_epi32, _mm256_sra_epi32], compare [_mm256_cmpgt_epi32, _mm256_cmpeq_epi32],
-    floats [_mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps, _mm256_min_ps, _mm256_max_ps],
-    masks [greater_256, greater_or_equal_256, _mm256_movemask_ps, _mm256_blendv_ps]
-}
+    several! {
+        /// [`SimdLevel::Avx2`].
+        Avx2, 2 registers,
+        __m256i, __m256,
+        splat [_mm256_set1_epi32, _mm256_set1_ps],
+        cast [_mm256_castps_si256, _mm256_castsi256_ps, _mm256_cvtepi32_ps],
+        integers [_mm256_add_epi32, _mm256_sub_epi32, _mm256_mullo_epi32, _mm256_min_epi32, _mm256_max_epi32,
+            _mm256_and_si256, _mm256_or_si256],
+        shifts [_mm256_sll_epi32, _mm256_sra_epi32], compare [_mm256_cmpgt_epi32, _mm256_cmpeq_epi32],
+        floats [_mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps, _mm256_min_ps, _mm256_max_ps],
+        masks [greater_256, greater_or_equal_256, _mm256_movemask_ps, _mm256_blendv_ps]
+    }
 
-several! {
-    /// [`SimdLevel::Sse41`].
-    Sse41, 4 registers,
-    __m128i, __m128,
-    splat [_mm_set1_epi32, _mm_set1_ps],
-    cast [_mm_castps_si128, _mm_castsi128_ps, _mm_cvtepi32_ps],
-    integers [_mm_add_epi32, _mm_sub_epi32, _mm_mullo_epi32, _mm_min_epi32, _mm_max_epi32, _mm_and_si128,
-        _mm_or_si128],
-    shifts [_mm_sll_epi32, _mm_sra_epi32], compare [_mm_cmpgt_epi32, _mm_cmpeq_epi32],
-    floats [_mm_add_ps, _mm_sub_ps, _mm_mul_ps, _mm_div_ps, _mm_min_ps, _mm_max_ps],
-    masks [_mm_cmpgt_ps, _mm_cmpge_ps, _mm_movemask_ps, _mm_blendv_ps]
-}
+    several! {
+        /// [`SimdLevel::Sse41`].
+        Sse41, 4 registers,
+        __m128i, __m128,
+        splat [_mm_set1_epi32, _mm_set1_ps],
+        cast [_mm_castps_si128, _mm_castsi128_ps, _mm_cvtepi32_ps],
+        integers [_mm_add_epi32, _mm_sub_epi32, _mm_mullo_epi32, _mm_min_epi32, _mm_max_epi32, _mm_and_si128,
+            _mm_or_si128],
+        shifts [_mm_sll_epi32, _mm_sra_epi32], compare [_mm_cmpgt_epi32, _mm_cmpeq_epi32],
+        floats [_mm_add_ps, _mm_sub_ps, _mm_mul_ps, _mm_div_ps, _mm_min_ps, _mm_max_ps],
+        masks [_mm_cmpgt_ps, _mm_cmpge_ps, _mm_movemask_ps, _mm_blendv_ps]
+    }
 
-/// One value of each run, by folding pairs of registers into one, four times: half of the lanes
-/// of the one beside half of those of the other.
-#[cfg(target_arch = "x86_64")]
-macro_rules! fold_runs {
-    ($runs:ident, $fold:ident) => {{
-        let (mut halves, mut quarters) = ([_mm512_setzero_ps(); 8], [_mm512_setzero_ps(); 4]);
-        // The order of the runs is such that they come out sorted.
-        for i in 0..8 {
-            let first = [0, 8, 1, 9, 2, 10, 3, 11][i];
-            let (a, b) = (Self::load_f(&$runs[first]), Self::load_f(&$runs[first + 4]));
-            halves[i] = $fold(
-                _mm512_shuffle_f32x4::<0b01_00_01_00>(a, b),
-                _mm512_shuffle_f32x4::<0b11_10_11_10>(a, b),
-            );
+    /// One value of each run, by folding pairs of registers into one, four times: half of the lanes
+    /// of the one beside half of those of the other.
+    macro_rules! fold_runs {
+        ($runs:ident, $fold:ident) => {{
+            let (mut halves, mut quarters) = ([_mm512_setzero_ps(); 8], [_mm512_setzero_ps(); 4]);
+            // The order of the runs is such that they come out sorted.
+            for i in 0..8 {
+                let first = [0, 8, 1, 9, 2, 10, 3, 11][i];
+                let (a, b) = (Self::load_f(&$runs[first]), Self::load_f(&$runs[first + 4]));
+                halves[i] = $fold(
+                    _mm512_shuffle_f32x4::<0b01_00_01_00>(a, b),
+                    _mm512_shuffle_f32x4::<0b11_10_11_10>(a, b),
+                );
+            }
+            for i in 0..4 {
+                let (a, b) = (halves[2 * i], halves[2 * i + 1]);
+                quarters[i] = $fold(
+                    _mm512_shuffle_f32x4::<0b10_00_10_00>(a, b),
+                    _mm512_shuffle_f32x4::<0b11_01_11_01>(a, b),
+                );
+            }
+            let [a, b, c, d] = quarters;
+            let even = _mm512_castps_pd($fold(_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b)));
+            let odd = _mm512_castps_pd($fold(_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d)));
+            $fold(
+                _mm512_castpd_ps(_mm512_unpacklo_pd(even, odd)),
+                _mm512_castpd_ps(_mm512_unpackhi_pd(even, odd)),
+            )
+        }};
+    }
+
+    /// [`SimdLevel::Avx512`].
+    pub(crate) struct Avx512;
+
+    impl Isa for Avx512 {
+        type I = __m512i;
+        type F = __m512;
+
+        single! {
+            splat(v: i32) -> __m512i = _mm512_set1_epi32(v);
+            load(v: &[i32; LANES]) -> __m512i = _mm512_loadu_si512(v.as_ptr().cast());
+            store(v: __m512i) -> [i32; LANES] = std::mem::transmute::<__m512i, [i32; LANES]>(v);
+            widen(v: &[u8; LANES]) -> __m512i = _mm512_cvtepu8_epi32(_mm_loadu_si128(v.as_ptr().cast()));
+            add(a: __m512i, b: __m512i) -> __m512i = _mm512_add_epi32(a, b);
+            sub(a: __m512i, b: __m512i) -> __m512i = _mm512_sub_epi32(a, b);
+            mul(a: __m512i, b: __m512i) -> __m512i = _mm512_mullo_epi32(a, b);
+            min(a: __m512i, b: __m512i) -> __m512i = _mm512_min_epi32(a, b);
+            max(a: __m512i, b: __m512i) -> __m512i = _mm512_max_epi32(a, b);
+            and(a: __m512i, b: __m512i) -> __m512i = _mm512_and_si512(a, b);
+            or(a: __m512i, b: __m512i) -> __m512i = _mm512_or_si512(a, b);
+            gt(a: __m512i, b: __m512i) -> Mask = Mask::from(_mm512_cmpgt_epi32_mask(a, b));
+            compress(mask: Mask, a: __m512i) -> __m512i = _mm512_maskz_compress_epi32(mask as u16, a);
+            blend(mask: Mask, a: __m512i, b: __m512i) -> __m512i = _mm512_mask_blend_epi32(mask as u16, a, b);
+            splat_f(v: f32) -> __m512 = _mm512_set1_ps(v);
+            load_f(v: &[f32; LANES]) -> __m512 = _mm512_loadu_ps(v.as_ptr());
+            store_f(v: __m512) -> [f32; LANES] = std::mem::transmute::<__m512, [f32; LANES]>(v);
+            to_f(a: __m512i) -> __m512 = _mm512_cvtepi32_ps(a);
+            bits(a: __m512) -> __m512i = _mm512_castps_si512(a);
+            add_f(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
+            sub_f(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
+            mul_f(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
+            div_f(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
+            min_f(a: __m512, b: __m512) -> __m512 = _mm512_min_ps(a, b);
+            max_f(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
+            gt_f(a: __m512, b: __m512) -> Mask = Mask::from(_mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b));
+            ge_f(a: __m512, b: __m512) -> Mask = Mask::from(_mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b));
+            blend_f(mask: Mask, a: __m512, b: __m512) -> __m512 = _mm512_mask_blend_ps(mask as u16, a, b);
         }
-        for i in 0..4 {
-            let (a, b) = (halves[2 * i], halves[2 * i + 1]);
-            quarters[i] = $fold(
-                _mm512_shuffle_f32x4::<0b10_00_10_00>(a, b),
-                _mm512_shuffle_f32x4::<0b11_01_11_01>(a, b),
-            );
+
+        #[inline(always)]
+        fn shift_left<const N: u32>(a: __m512i) -> __m512i {
+            // SAFETY: as for `single`.
+            unsafe { _mm512_slli_epi32::<N>(a) }
         }
-        let [a, b, c, d] = quarters;
-        let even = _mm512_castps_pd($fold(_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b)));
-        let odd = _mm512_castps_pd($fold(_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d)));
-        $fold(
-            _mm512_castpd_ps(_mm512_unpacklo_pd(even, odd)),
-            _mm512_castpd_ps(_mm512_unpackhi_pd(even, odd)),
-        )
-    }};
-}
 
-/// [`SimdLevel::Avx512`].
-#[cfg(target_arch = "x86_64")]
-pub(crate) struct Avx512;
-
-#[cfg(target_arch = "x86_64")]
-impl Isa for Avx512 {
-    type I = __m512i;
-    type F = __m512;
-
-    single! {
-        splat(v: i32) -> __m512i = _mm512_set1_epi32(v);
-        load(v: &[i32; LANES]) -> __m512i = _mm512_loadu_si512(v.as_ptr().cast());
-        store(v: __m512i) -> [i32; LANES] = std::mem::transmute::<__m512i, [i32; LANES]>(v);
-        widen(v: &[u8; LANES]) -> __m512i = _mm512_cvtepu8_epi32(_mm_loadu_si128(v.as_ptr().cast()));
-        add(a: __m512i, b: __m512i) -> __m512i = _mm512_add_epi32(a, b);
-        sub(a: __m512i, b: __m512i) -> __m512i = _mm512_sub_epi32(a, b);
-        mul(a: __m512i, b: __m512i) -> __m512i = _mm512_mullo_epi32(a, b);
-        min(a: __m512i, b: __m512i) -> __m512i = _mm512_min_epi32(a, b);
-        max(a: __m512i, b: __m512i) -> __m512i = _mm512_max_epi32(a, b);
-        and(a: __m512i, b: __m512i) -> __m512i = _mm512_and_si512(a, b);
-        or(a: __m512i, b: __m512i) -> __m512i = _mm512_or_si512(a, b);
-        gt(a: __m512i, b: __m512i) -> Mask = Mask::from(_mm512_cmpgt_epi32_mask(a, b));
-        compress(mask: Mask, a: __m512i) -> __m512i = _mm512_maskz_compress_epi32(mask as u16, a);
-        blend(mask: Mask, a: __m512i, b: __m512i) -> __m512i = _mm512_mask_blend_epi32(mask as u16, a, b);
-        splat_f(v: f32) -> __m512 = _mm512_set1_ps(v);
-        load_f(v: &[f32; LANES]) -> __m512 = _mm512_loadu_ps(v.as_ptr());
-        store_f(v: __m512) -> [f32; LANES] = std::mem::transmute::<__m512, [f32; LANES]>(v);
-        to_f(a: __m512i) -> __m512 = _mm512_cvtepi32_ps(a);
-        bits(a: __m512) -> __m512i = _mm512_castps_si512(a);
-        add_f(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
-        sub_f(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
-        mul_f(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
-        div_f(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
-        min_f(a: __m512, b: __m512) -> __m512 = _mm512_min_ps(a, b);
-        max_f(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
-        gt_f(a: __m512, b: __m512) -> Mask = Mask::from(_mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b));
-        ge_f(a: __m512, b: __m512) -> Mask = Mask::from(_mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b));
-        blend_f(mask: Mask, a: __m512, b: __m512) -> __m512 = _mm512_mask_blend_ps(mask as u16, a, b);
-    }
-
-    #[inline(always)]
-    fn shift_left<const N: u32>(a: __m512i) -> __m512i {
-        // SAFETY: as for `single`.
-        unsafe { _mm512_slli_epi32::<N>(a) }
-    }
-
-    #[inline(always)]
-    fn shift_right<const N: u32>(a: __m512i) -> __m512i {
-        // SAFETY: as for `single`.
-        unsafe { _mm512_srai_epi32::<N>(a) }
-    }
-
-    #[inline(always)]
-    fn look_up(table: &[i32; TABLE], at: __m512i) -> __m512i {
-        let (quarters, _) = table.as_chunks::<LANES>();
-        // SAFETY: as for `single`. Bit 4 of an index chooses the register of a pair, bit 5 the pair.
-        unsafe {
-            let low = _mm512_permutex2var_epi32(Self::load(&quarters[0]), at, Self::load(&quarters[1]));
-            let high = _mm512_permutex2var_epi32(Self::load(&quarters[2]), at, Self::load(&quarters[3]));
-            let upper = _mm512_test_epi32_mask(at, _mm512_set1_epi32(32));
-            _mm512_mask_blend_epi32(upper, low, high)
+        #[inline(always)]
+        fn shift_right<const N: u32>(a: __m512i) -> __m512i {
+            // SAFETY: as for `single`.
+            unsafe { _mm512_srai_epi32::<N>(a) }
         }
-    }
 
-    #[inline(always)]
-    fn look_up_f(table: &[f32; TABLE], at: __m512i) -> __m512 {
-        let (quarters, _) = table.as_chunks::<LANES>();
-        // SAFETY: as for `look_up`.
-        unsafe {
-            let low = _mm512_permutex2var_ps(Self::load_f(&quarters[0]), at, Self::load_f(&quarters[1]));
-            let high = _mm512_permutex2var_ps(Self::load_f(&quarters[2]), at, Self::load_f(&quarters[3]));
-            let upper = _mm512_test_epi32_mask(at, _mm512_set1_epi32(32));
-            _mm512_mask_blend_ps(upper, low, high)
+        #[inline(always)]
+        fn look_up(table: &[i32; TABLE], at: __m512i) -> __m512i {
+            let (quarters, _) = table.as_chunks::<LANES>();
+            // SAFETY: as for `single`. Bit 4 of an index chooses the register of a pair, bit 5 the pair.
+            unsafe {
+                let low = _mm512_permutex2var_epi32(Self::load(&quarters[0]), at, Self::load(&quarters[1]));
+                let high = _mm512_permutex2var_epi32(Self::load(&quarters[2]), at, Self::load(&quarters[3]));
+                let upper = _mm512_test_epi32_mask(at, _mm512_set1_epi32(32));
+                _mm512_mask_blend_epi32(upper, low, high)
+            }
         }
-    }
 
-    #[inline(always)]
-    fn prefetch<T>(what: &T) {
-        // SAFETY: a hint, which reads nothing.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(what).cast()) }
-    }
+        #[inline(always)]
+        fn look_up_f(table: &[f32; TABLE], at: __m512i) -> __m512 {
+            let (quarters, _) = table.as_chunks::<LANES>();
+            // SAFETY: as for `look_up`.
+            unsafe {
+                let low = _mm512_permutex2var_ps(Self::load_f(&quarters[0]), at, Self::load_f(&quarters[1]));
+                let high = _mm512_permutex2var_ps(Self::load_f(&quarters[2]), at, Self::load_f(&quarters[3]));
+                let upper = _mm512_test_epi32_mask(at, _mm512_set1_epi32(32));
+                _mm512_mask_blend_ps(upper, low, high)
+            }
+        }
 
-    #[inline(always)]
-    fn least(runs: &[[f32; LANES]; LANES]) -> __m512 {
-        // SAFETY: as for `single`.
-        unsafe { fold_runs!(runs, _mm512_min_ps) }
-    }
+        #[inline(always)]
+        fn prefetch<T>(what: &T) {
+            // SAFETY: a hint, which reads nothing.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(what).cast()) }
+        }
 
-    #[inline(always)]
-    fn greatest(runs: &[[f32; LANES]; LANES]) -> __m512 {
-        // SAFETY: as for `single`.
-        unsafe { fold_runs!(runs, _mm512_max_ps) }
+        #[inline(always)]
+        fn least(runs: &[[f32; LANES]; LANES]) -> __m512 {
+            // SAFETY: as for `single`.
+            unsafe { fold_runs!(runs, _mm512_min_ps) }
+        }
+
+        #[inline(always)]
+        fn greatest(runs: &[[f32; LANES]; LANES]) -> __m512 {
+            // SAFETY: as for `single`.
+            unsafe { fold_runs!(runs, _mm512_max_ps) }
+        }
     }
 }
 
