@@ -29,6 +29,12 @@ struct Flags {
     /// Two small workloads and few frames: does it run at all?
     #[arg(long)]
     quick: bool,
+    /// Only so many boxes.
+    #[arg(long)]
+    count: Option<usize>,
+    /// Only this share of movers.
+    #[arg(long)]
+    moving: Option<f64>,
     /// Where table.csv and plot.png go.
     #[arg(long, default_value = "out/tree_maintenance")]
     out: PathBuf,
@@ -45,8 +51,8 @@ fn main() -> anyhow::Result<()> {
     csv.write_record(Row::NAMES)?;
     println!("| {} |\n|{}", Row::NAMES.join(" | "), "---|".repeat(Row::NAMES.len()));
     let mut rows = Vec::new();
-    for &count in counts {
-        for moving in [0.0, 0.2, 0.5, 1.0] {
+    for &count in counts.iter().filter(|&&n| flags.count.is_none_or(|only| only == n)) {
+        for moving in [0.0, 0.2, 0.5, 1.0].into_iter().filter(|&m| flags.moving.is_none_or(|only| only == m)) {
             let frames = if flags.quick { 20 } else { (40_000_000 / count).clamp(60, 2000) };
             let row = measure::run(count, moving, frames, TreeConfig::default());
             println!("| {} |", row.cells().join(" | "));

@@ -10,7 +10,6 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::Tree;
 use super::block::{Block, LANES};
-use super::measure::bits_of;
 use crate::geom::{Aabb, Frustum};
 
 /// A walk through the tree by a view's frustum; kept, it needs no memory from the second on.
@@ -207,3 +206,21 @@ impl Planes {
 fn sum<S: Simd>(simd: S, [x, y, z]: [S::f32s; 3]) -> S::f32s {
     simd.add_f32s(simd.add_f32s(x, y), z)
 }
+
+/// A mask of one register's lanes as bits of the block's.
+#[inline(always)]
+fn bits_of<S: Simd>(simd: S, mask: S::m32s, register: usize) -> u16 {
+    // Lanes as different powers of two add up to their bits, exactly.
+    let powers = S::as_simd_f32s(&POWERS).0[register];
+    simd.reduce_sum_f32s(simd.select_f32s(mask, powers, simd.splat_f32s(0.0))) as u16
+}
+
+const POWERS: [f32; LANES] = {
+    let mut powers = [1.0; LANES];
+    let mut i = 1;
+    while i < LANES {
+        powers[i] = 2.0 * powers[i - 1];
+        i += 1;
+    }
+    powers
+};

@@ -1,0 +1,151 @@
+//! Taking the movers' new boxes over into the blocks, and finding who has left its cell.
+//!
+//! Block by block, each by itself: all sixteen boxes are gathered anew (most of a block that has a
+//! mover are movers), turned into rows, and compared with the cell as they pass. Then, in the
+//! order of the blocks, nodes are marked and movers gathered at the front of their runs.
+
+use pulp::NullaryFnOnce;
+
+use super::Tree;
+use super::block::LANES;
+use super::blocks::{Blocks, NONE, News};
+use super::gather::{ByFours, Gather, Site};
+use super::node::Nodes;
+use super::refit::CONTENT;
+
+/// Blocks that are skipped at once where nothing has moved.
+const REGION: usize = 64;
+
+/// Updates after which a run that moves looks whether its movers still do.
+const REVIEW: u32 = 64;
+
+impl Tree {
+    /// Brings the blocks in step with the boxes, marks the nodes of those that changed, and lists
+    /// the objects that have left. O(blocks with moved objects), and a look at a byte for every
+    /// block without, unless none has any.
+    pub(super) fn refresh(&mut self) {
+        if !std::mem::take(&mut self.blocks.any_stale) {
+            return;
+        }
+        self.renew();
+        let mut node = NONE;
+        let mut moved = 0;
+        for region in 0..self.blocks.stale.len().div_ceil(REGION) {
+            let range = region * REGION..self.blocks.stale.len().min((region + 1) * REGION);
+            if !self.blocks.stale[range.clone()].iter().fold(false, |any, &stale| any | stale) {
+                continue;
+            }
+            for block in range {
+                if !std::mem::take(&mut self.blocks.stale[block]) {
+                    continue;
+                }
+                if node != self.blocks.owner[block] {
+                    self.note_moved(node, moved);
+                    (node, moved) = (self.blocks.owner[block], 0);
+                }
+                moved += self.blocks.news[block].moved.count_ones();
+                self.list_leavers(block, node);
+                self.gather_movers(block, node);
+            }
+        }
+        self.note_moved(node, moved);
+    }
+
+    /// Renews every stale block, in the widest registers that help.
+    fn renew(&mut self) {
+        let Self { blocks, nodes, .. } = self;
+        #[cfg(target_arch = "x86_64")]
+        if let Some(wide) = pulp::x86::V4::try_new() {
+            return wide.vectorize(Renew { gather: wide, blocks, nodes });
+        }
+        Renew { gather: ByFours, blocks, nodes }.call();
+    }
+
+    fn list_leavers(&mut self, block: usize, node: u32) {
+        let mut out = self.blocks.news[block].out;
+        let divided = !self.nodes.is_leaf(node);
+        let block = &self.blocks.blocks[block];
+        while out != 0 {
+            let lane = out.trailing_zeros() as usize % LANES;
+            out &= out - 1;
+            if !(divided && self.nodes.keeps(node, &block.aabb(lane))) {
+                self.leavers.push(block.slots[lane]);
+            }
+        }
+    }
+
+    /// Brings the objects that have moved twice in a row to the front of their run.
+    fn gather_movers(&mut self, block: usize, node: u32) {
+        let run = &mut self.nodes.run[node as usize];
+        let first = run.index(block * LANES);
+        if run.len <= LANES as u32 || first + LANES as u32 <= run.active {
+            return;
+        }
+        let mut again = self.blocks.news[block].again >> run.active.saturating_sub(first);
+        let known = run.active.saturating_sub(first);
+        while again != 0 {
+            let lane = again.trailing_zeros();
+            again &= again - 1;
+            self.blocks.promote(run, first + known + lane);
+        }
+    }
+
+    /// Marks a node in which so many objects have moved.
+    fn note_moved(&mut self, node: u32, moved: u32) {
+        if node == NONE {
+            return;
+        }
+        self.touch(node, CONTENT);
+        let n = node as usize;
+        if is_review(node, self.tick) && 2 * moved < self.nodes.run[n].active {
+            self.nodes.run[n].active = 0;
+        }
+        if self.nodes.retry_at[n] > 0 {
+            // What could not be separated may be by now: every move brings the next try nearer.
+            self.nodes.retry_at[n] = self.nodes.retry_at[n].saturating_sub(moved);
+            if self.nodes.is_leaf(node)
+                && self.nodes.run[n].len >= self.build_from().max(self.nodes.retry_at[n])
+            {
+                self.crowded.push(node);
+            }
+        }
+    }
+}
+
+/// In turns, so that no update has to look at all runs.
+fn is_review(node: u32, tick: u32) -> bool {
+    tick.wrapping_add(node).is_multiple_of(REVIEW)
+}
+
+/// The renewing of all stale blocks, to be compiled for each kind of registers.
+struct Renew<'a, G> {
+    gather: G,
+    blocks: &'a mut Blocks,
+    nodes: &'a Nodes,
+}
+
+impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { gather, blocks: Blocks { blocks, hulls, owner, stale, news, known, .. }, nodes } = self;
+        let results = blocks.iter_mut().zip(hulls).zip(news);
+        for (((block, hull), news), (&stale, &node)) in results.zip(stale.iter().zip(&*owner)) {
+            if !stale {
+                continue;
+            }
+            let n = node as usize;
+            let site = Site { cell: nodes.cell[n], straddled: nodes.straddled[n] };
+            let found = gather.renew(block, known, &site);
+            *hull = found.hull;
+            // A leaf at the root holds what there is; in an inner node, all that move are looked at.
+            let out = match (nodes.is_leaf(node), node) {
+                (false, _) => found.moved,
+                (true, 0) => 0,
+                (true, _) => found.out,
+            };
+            *news = News { moved: found.moved, again: found.moved & news.moved, out };
+        }
+    }
+}
