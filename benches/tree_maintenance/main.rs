@@ -54,7 +54,7 @@ fn main() -> anyhow::Result<()> {
     for &count in counts.iter().filter(|&&n| flags.count.is_none_or(|only| only == n)) {
         for moving in [0.0, 0.2, 0.5, 1.0].into_iter().filter(|&m| flags.moving.is_none_or(|only| only == m)) {
             let frames = if flags.quick { 20 } else { (40_000_000 / count).clamp(60, 2000) };
-            let row = measure::run(count, moving, frames, TreeConfig::default());
+            let mut tc=TreeConfig::default(); if let Ok(v)=std::env::var("UL"){tc.unasked_leaf=v.parse()?;} let row = measure::run(count, moving, frames, tc);
             println!("| {} |", row.cells().join(" | "));
             csv.write_record(row.cells())?;
             rows.push(row);

@@ -25,6 +25,9 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// An object that has a box, but no lane yet.
 const WAITING: u32 = u32::MAX - 1;
 
+/// Blocks that are skipped at once where nothing has moved.
+const REGION: usize = 64;
+
 /// The arena of blocks, with the way from an object to its lane.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
@@ -196,6 +199,21 @@ impl Blocks {
         self.of(run).iter().flat_map(|block| {
             (0..LANES).map(|lane| (block.slots[lane], block.aabb(lane))).take_while(|(slot, _)| *slot != NONE)
         })
+    }
+
+    /// Lists the blocks whose objects have new boxes, in order, and holds them for refreshed. A look
+    /// at a byte for every block.
+    pub(super) fn take_stale(&mut self, list: &mut Vec<u32>) {
+        for (region, stale) in self.stale.chunks_mut(REGION).enumerate() {
+            if !stale.iter().fold(false, |any, &stale| any | stale) {
+                continue;
+            }
+            for (i, stale) in stale.iter_mut().enumerate() {
+                if std::mem::take(stale) {
+                    list.push((region * REGION + i) as u32);
+                }
+            }
+        }
     }
 
     /// The box around the objects of a run.

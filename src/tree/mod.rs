@@ -66,6 +66,8 @@ pub struct Tree {
     stats: TreeStats,
     /// Counts updates; stamps of nodes compare with it.
     tick: u32,
+    /// Reused by each refresh: blocks in which objects have moved.
+    stale: Vec<u32>,
     /// Objects whose new box their node does not hold.
     leavers: Vec<u32>,
     /// Objects that have no node yet; some may have been removed since.
@@ -109,6 +111,7 @@ impl Tree {
             log: EditLog::default(),
             stats: TreeStats::default(),
             tick: 1,
+            stale: Vec::new(),
             leavers: Vec::new(),
             arrivals: Vec::new(),
             waiting: 0,

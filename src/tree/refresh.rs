@@ -12,9 +12,10 @@ use super::blocks::{Blocks, NONE, News};
 use super::gather::{ByFours, Gather, Site};
 use super::node::Nodes;
 use super::refit::CONTENT;
+use crate::query::software::prefetch;
 
-/// Blocks that are skipped at once where nothing has moved.
-const REGION: usize = 64;
+/// Blocks that are asked of memory ahead of their turn.
+const AHEAD: usize = 4;
 
 /// Updates after which a run that moves looks whether its movers still do.
 const REVIEW: u32 = 64;
@@ -27,38 +28,32 @@ impl Tree {
         if !std::mem::take(&mut self.blocks.any_stale) {
             return;
         }
-        self.renew();
+        let mut stale = std::mem::take(&mut self.stale);
+        self.blocks.take_stale(&mut stale);
+        self.renew(&stale);
         let mut node = NONE;
         let mut moved = 0;
-        for region in 0..self.blocks.stale.len().div_ceil(REGION) {
-            let range = region * REGION..self.blocks.stale.len().min((region + 1) * REGION);
-            if !self.blocks.stale[range.clone()].iter().fold(false, |any, &stale| any | stale) {
-                continue;
+        for block in stale.drain(..).map(|block| block as usize) {
+            if node != self.blocks.owner[block] {
+                self.note_moved(node, moved);
+                (node, moved) = (self.blocks.owner[block], 0);
             }
-            for block in range {
-                if !std::mem::take(&mut self.blocks.stale[block]) {
-                    continue;
-                }
-                if node != self.blocks.owner[block] {
-                    self.note_moved(node, moved);
-                    (node, moved) = (self.blocks.owner[block], 0);
-                }
-                moved += self.blocks.news[block].moved.count_ones();
-                self.list_leavers(block, node);
-                self.gather_movers(block, node);
-            }
+            moved += self.blocks.news[block].moved.count_ones();
+            self.list_leavers(block, node);
+            self.gather_movers(block, node);
         }
         self.note_moved(node, moved);
+        self.stale = stale;
     }
 
-    /// Renews every stale block, in the widest registers that help.
-    fn renew(&mut self) {
+    /// Renews blocks, in the widest registers that help.
+    fn renew(&mut self, stale: &[u32]) {
         let Self { blocks, nodes, .. } = self;
         #[cfg(target_arch = "x86_64")]
         if let Some(wide) = pulp::x86::V4::try_new() {
-            return wide.vectorize(Renew { gather: wide, blocks, nodes });
+            return wide.vectorize(Renew { gather: wide, stale, blocks, nodes });
         }
-        Renew { gather: ByFours, blocks, nodes }.call();
+        Renew { gather: ByFours, stale, blocks, nodes }.call();
     }
 
     fn list_leavers(&mut self, block: usize, node: u32) {
@@ -117,9 +112,10 @@ fn is_review(node: u32, tick: u32) -> bool {
     tick.wrapping_add(node).is_multiple_of(REVIEW)
 }
 
-/// The renewing of all stale blocks, to be compiled for each kind of registers.
+/// The renewing of stale blocks, to be compiled for each kind of registers.
 struct Renew<'a, G> {
     gather: G,
+    stale: &'a [u32],
     blocks: &'a mut Blocks,
     nodes: &'a Nodes,
 }
@@ -129,22 +125,31 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { gather, blocks: Blocks { blocks, hulls, owner, stale, news, known, .. }, nodes } = self;
-        let results = blocks.iter_mut().zip(hulls).zip(news);
-        for (((block, hull), news), (&stale, &node)) in results.zip(stale.iter().zip(&*owner)) {
-            if !stale {
-                continue;
+        let Self { gather, stale, blocks, nodes } = self;
+        for (i, at) in stale.iter().map(|&block| block as usize).enumerate() {
+            // Two lines of memory in a row must be waited for: the slots', then those of the boxes.
+            if let Some(&next) = stale.get(i + 2 * AHEAD) {
+                let block = &blocks.blocks[next as usize];
+                prefetch(&block.slots);
+                block.min.iter().chain(&block.max).for_each(prefetch);
             }
+            if let Some(&next) = stale.get(i + AHEAD) {
+                for &slot in &blocks.blocks[next as usize].slots {
+                    prefetch(blocks.known.get(slot as usize).unwrap_or(&blocks.known[0]));
+                }
+            }
+            let node = blocks.owner[at];
             let n = node as usize;
             let site = Site { cell: nodes.cell[n], straddled: nodes.straddled[n] };
-            let found = gather.renew(block, known, &site);
-            *hull = found.hull;
+            let found = gather.renew(&mut blocks.blocks[at], &blocks.known, &site);
+            blocks.hulls[at] = found.hull;
             // A leaf at the root holds what there is; in an inner node, all that move are looked at.
             let out = match (nodes.is_leaf(node), node) {
                 (false, _) => found.moved,
                 (true, 0) => 0,
                 (true, _) => found.out,
             };
+            let news = &mut blocks.news[at];
             *news = News { moved: found.moved, again: found.moved & news.moved, out };
         }
     }

@@ -33,6 +33,7 @@ use rayon::prelude::*;
 pub use depth::DepthImage;
 pub use pass::{DrawCall, SoftwarePass};
 pub use simd::SimdLevel;
+pub(crate) use simd::prefetch;
 pub use visibility::VisibilityImage;
 
 use super::{Answer, QueryBackend, Ticket, Wait, Want};
