@@ -179,6 +179,17 @@ impl Blocks {
         }
     }
 
+    /// Sees to it that there is room for as many blocks as objects on the move will come to take, so
+    /// that no later update stops to move the arena.
+    pub(crate) fn leave_room(&mut self) {
+        let more = self.blocks.len().div_ceil(4);
+        self.blocks.reserve_exact(more);
+        self.hulls.reserve_exact(more);
+        self.owner.reserve_exact(more);
+        self.stale.reserve_exact(more);
+        self.news.reserve_exact(more);
+    }
+
     /// Gives a run's blocks back. The locations of its objects are the caller's business.
     pub(crate) fn release(&mut self, run: &mut Run) {
         self.blocks[run.used()].fill(Block::EMPTY);
@@ -301,10 +312,14 @@ impl Blocks {
     }
 }
 
-/// Lengthens an array, with an eighth to spare: doubling would leave a third of the memory unused.
-pub(super) fn grow<T: Clone>(array: &mut Vec<T>, len: usize, value: T) {
+/// An array that grows has room for this part of it to spare: with twice the room, as is usual, a third
+/// of the memory would lie unused.
+const SPARE: usize = 8;
+
+/// Lengthens an array, with some room to spare.
+pub(crate) fn grow<T: Clone>(array: &mut Vec<T>, len: usize, value: T) {
     if len > array.capacity() {
-        array.reserve_exact(len + len / 8 - array.len());
+        array.reserve_exact(len + len / SPARE - array.len());
     }
     array.resize(len, value);
 }

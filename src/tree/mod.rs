@@ -36,6 +36,7 @@ pub use visit::Walk;
 
 use crate::geom::Aabb;
 use blocks::Blocks;
+pub(crate) use blocks::grow;
 use node::Nodes;
 use refit::Dirty;
 
