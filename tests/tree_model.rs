@@ -408,7 +408,7 @@ fn leaves_are_as_large_as_the_costs_ask_for() {
 /// A tree that nobody asks anything stays coarse; the first view that asks makes it fine at once.
 #[test]
 fn the_first_view_that_asks_refines_the_tree() {
-    let mut scene = row(2000, TreeConfig::default());
+    let mut scene = row(4000, TreeConfig::default());
     for _ in 0..3 {
         scene.adapt([&mut Ballot(Votes::default())]);
         scene.update();

@@ -60,6 +60,7 @@ impl Tree {
     /// what has changed. O(edits · depth), and next to nothing for a tree without edits.
     pub(crate) fn update(&mut self) {
         self.tick = self.tick.wrapping_add(1);
+        self.log.forget(self.tick);
         self.refresh();
         self.relocate();
         self.place_arrivals();
