@@ -79,7 +79,8 @@ pub fn run(case: Case) -> Row {
     let Run { times: [write, copy, update], queries, scene } = all;
     let tenth = (case.frames / 10).max(1);
     let tree = scene.tree();
-    let across: usize = tree.nodes().filter(|node| node.is_leaf && node.is_straddle).map(|node| node.own).sum();
+    let across: usize =
+        tree.nodes().filter(|node| node.is_leaf && node.is_straddle).map(|node| node.own).sum();
     let moved = (case.frames + WARM_UP) as f64 * case.count as f64 * case.moving;
     Row {
         write: median(&write),

@@ -44,7 +44,8 @@ pub fn by_manner(path: &Path, rows: &[Row]) -> anyhow::Result<()> {
     let each = |row: &Row, seconds: f64| seconds * 1e9 / (row.case.count as f64 * row.case.moving);
     let top = nice_top(rows.iter().map(|row| each(row, row.update)).fold(0.0, f64::max));
     let bars = COLORS[1].1;
-    let legend = [Key::new(bars, "the tree".to_owned()), Key::new(FAINT, "merely writing the boxes".to_owned())];
+    let legend =
+        [Key::new(bars, "the tree".to_owned()), Key::new(FAINT, "merely writing the boxes".to_owned())];
     canvas::save(path, (900, 520), |sheet| {
         let subtitle = "Half of the boxes move; placement, refit and adaptation included";
         let area = canvas::heading(sheet, "What an object that moves costs the tree", subtitle, &legend)?;

@@ -85,7 +85,8 @@ impl Gather for V4 {
             *words = newest.get(slot as usize).unwrap_or(&Words::NOTHING);
         }
         let (near, far) = (halves(self, &boxes, 0), halves(self, &boxes, 1));
-        let ([x, y], [z, far_x], [far_y, far_z]) = (lower(self, &near), upper(self, &near), lower(self, &far));
+        let ([x, y], [z, far_x], [far_y, far_z]) =
+            (lower(self, &near), upper(self, &near), lower(self, &far));
         let (min, max) = ([x, y, z], [far_x, far_y, far_z]);
         let (mut moved, mut out) = (0, 0);
         for axis in 0..3 {

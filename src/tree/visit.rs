@@ -98,10 +98,12 @@ impl<F: FnMut(&Block, u16)> Visit<'_, F> {
     fn own<S: Simd>(&mut self, simd: S, node: u32, crossed: u16) {
         let run = self.tree.nodes.run[node as usize];
         let mut left = run.len as usize;
+        let mut edges = [Edge::NONE; Planes::COUNT];
+        let edges = self.planes.edges(crossed, &self.tree.nodes.bounds[node as usize], &mut edges);
         for block in self.tree.blocks.of(run) {
             let held = if left < LANES { (1 << left) - 1 } else { u16::MAX };
             left = left.saturating_sub(LANES);
-            let lanes = if crossed == 0 { held } else { held & !self.planes.outside(simd, block, crossed) };
+            let lanes = if crossed == 0 { held } else { held & !outside(simd, block, edges) };
             if lanes != 0 {
                 (self.found)(block, lanes);
             }
@@ -165,34 +167,73 @@ impl Planes {
         [outside, across]
     }
 
-    /// The lanes of a block that are outside one of the planes that are crossed.
+    /// The planes that a node crosses, made ready for its blocks.
     #[inline(always)]
-    fn outside<S: Simd>(&self, simd: S, block: &Block, crossed: u16) -> u16 {
-        let mut bits = 0;
-        for i in 0..LANES / S::F32_LANES {
-            let mut least = simd.splat_f32s(0.0);
-            let mut rest = crossed;
-            while rest != 0 {
-                let plane = rest.trailing_zeros() as usize % Self::ROOM;
-                rest &= rest - 1;
-                let mut terms = [simd.splat_f32s(0.0); 3];
-                for (axis, term) in terms.iter_mut().enumerate() {
-                    let (u, l) = (self.upper[axis][plane], self.lower[axis][plane]);
-                    let far_u = if u >= 0.0 { &block.max[axis] } else { &block.min[axis] };
-                    let far_l = if l >= 0.0 { &block.max[axis] } else { &block.min[axis] };
-                    *term = simd.max_f32s(
-                        simd.mul_f32s(simd.splat_f32s(u), S::as_simd_f32s(far_u).0[i]),
-                        simd.mul_f32s(simd.splat_f32s(l), S::as_simd_f32s(far_l).0[i]),
-                    );
-                }
-                let form = simd.add_f32s(sum(simd, terms), simd.splat_f32s(self.outer[plane]));
-                least = simd.min_f32s(least, form);
+    fn edges<'a>(&self, crossed: u16, bounds: &Aabb, edges: &'a mut [Edge; Self::COUNT]) -> &'a [Edge] {
+        let (mut count, mut rest) = (0, crossed);
+        while rest != 0 && count < Self::COUNT {
+            let plane = rest.trailing_zeros() as usize % Self::ROOM;
+            rest &= rest - 1;
+            edges[count].outer = self.outer[plane];
+            for axis in 0..3 {
+                let (u, l) = (self.upper[axis][plane], self.lower[axis][plane]);
+                let above = bounds.min[axis] >= 0.0;
+                edges[count].form[axis] = if (u >= 0.0) == (l >= 0.0) && (above || bounds.max[axis] <= 0.0) {
+                    // u ≥ l, and products round in order: it is known which is the greater one.
+                    Form { u: if above { u } else { l }, l: None, greatest: [u >= 0.0; 2] }
+                } else {
+                    Form { u, l: Some(l), greatest: [u >= 0.0, l >= 0.0] }
+                };
             }
-            let outside = simd.less_than_f32s(least, simd.splat_f32s(0.0));
-            bits |= bits_of(simd, outside, i);
+            count += 1;
         }
-        bits
+        &edges[..count]
     }
+}
+
+/// A plane that a node crosses.
+#[derive(Clone, Copy)]
+struct Edge {
+    form: [Form; 3],
+    outer: f32,
+}
+
+/// What an axis adds to a plane's form: the product with one coefficient, or the greater of two; and
+/// for each whether it is with the greatest coordinate, or the least.
+#[derive(Clone, Copy)]
+struct Form {
+    u: f32,
+    l: Option<f32>,
+    greatest: [bool; 2],
+}
+
+impl Edge {
+    const NONE: Self = Self { form: [Form { u: 0.0, l: None, greatest: [false; 2] }; 3], outer: 0.0 };
+}
+
+/// The lanes of a block that are outside one of the planes.
+#[inline(always)]
+fn outside<S: Simd>(simd: S, block: &Block, edges: &[Edge]) -> u16 {
+    let mut bits = 0;
+    for i in 0..LANES / S::F32_LANES {
+        let mut least = simd.splat_f32s(0.0);
+        for Edge { form, outer } in edges {
+            let mut terms = [simd.splat_f32s(0.0); 3];
+            for axis in 0..3 {
+                let Form { u, l, greatest } = form[axis];
+                let far = if greatest[0] { &block.max[axis] } else { &block.min[axis] };
+                terms[axis] = simd.mul_f32s(simd.splat_f32s(u), S::as_simd_f32s(far).0[i]);
+                if let Some(l) = l {
+                    let far = if greatest[1] { &block.max[axis] } else { &block.min[axis] };
+                    let other = simd.mul_f32s(simd.splat_f32s(l), S::as_simd_f32s(far).0[i]);
+                    terms[axis] = simd.max_f32s(terms[axis], other);
+                }
+            }
+            least = simd.min_f32s(least, simd.add_f32s(sum(simd, terms), simd.splat_f32s(*outer)));
+        }
+        bits |= bits_of(simd, simd.less_than_f32s(least, simd.splat_f32s(0.0)), i);
+    }
+    bits
 }
 
 /// In the order of [`Frustum::classify`]. Closures would not be compiled for the wide registers.
