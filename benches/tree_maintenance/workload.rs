@@ -44,15 +44,16 @@ impl Workload {
         let mut unit = || (rng.next_u32() >> 8) as f32 / (1 << 24) as f32;
         let mut vec3 =
             |low: f32, high: f32| Vec3::from_array(std::array::from_fn(|_| unit() * (high - low) + low));
-        let mut place = || {
-            let at = vec3(0.0, side);
-            let ball = side / BALLS;
-            let middle = ((at / ball).floor() + 0.5) * ball;
-            if manner.gathered { middle + (at - middle) * 0.3 } else { at }
+        let ball = side / BALLS;
+        let mut aabb = || {
+            let mut at = vec3(0.0, side);
+            if manner.gathered {
+                let middle = ((at / ball).floor() + 0.5) * ball;
+                at = middle + (at - middle) * 0.3;
+            }
+            Aabb::from_center(at, vec3(0.1, 1.0) * manner.extent)
         };
-        let places: Vec<Vec3> = (0..count).map(|_| place()).collect();
-        let extent = manner.extent;
-        let boxes = places.into_iter().map(|at| Aabb::from_center(at, vec3(0.1, 1.0) * extent)).collect();
+        let boxes = (0..count).map(|_| aabb()).collect();
         let movers = (count as f64 * moving) as usize;
         let velocities = (0..movers).map(|_| vec3(-1.0, 1.0).normalize_or_zero() * manner.step).collect();
         Self { boxes, velocities, side, frame: 0 }

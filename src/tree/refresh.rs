@@ -9,13 +9,16 @@ use pulp::NullaryFnOnce;
 use super::Tree;
 use super::block::LANES;
 use super::blocks::{Blocks, NONE, News};
-use super::gather::{ByFours, Gather, Site};
+use super::gather::{ByFours, Gather, Site, Words};
 use super::node::Nodes;
 use super::refit::CONTENT;
 use crate::query::software::prefetch;
 
 /// Blocks that are asked of memory ahead of their turn.
 const AHEAD: usize = 4;
+
+/// Arenas of fewer blocks are near enough as it is: about what the second cache holds.
+const FAR: usize = 2048;
 
 /// Updates after which a run that moves looks whether its movers still do.
 const REVIEW: u32 = 64;
@@ -126,17 +129,10 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
     #[inline(always)]
     fn call(self) {
         let Self { gather, stale, blocks, nodes } = self;
+        let is_far = blocks.blocks.len() >= FAR;
         for (i, at) in stale.iter().map(|&block| block as usize).enumerate() {
-            // Two lines of memory in a row must be waited for: the slots', then those of the boxes.
-            if let Some(&next) = stale.get(i + 2 * AHEAD) {
-                let block = &blocks.blocks[next as usize];
-                prefetch(&block.slots);
-                block.min.iter().chain(&block.max).for_each(prefetch);
-            }
-            if let Some(&next) = stale.get(i + AHEAD) {
-                for &slot in &blocks.blocks[next as usize].slots {
-                    prefetch(blocks.known.get(slot as usize).unwrap_or(&blocks.known[0]));
-                }
+            if is_far {
+                ask_ahead(blocks, &stale[i..]);
             }
             let node = blocks.owner[at];
             let n = node as usize;
@@ -151,6 +147,22 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
             };
             let news = &mut blocks.news[at];
             *news = News { moved: found.moved, again: found.moved & news.moved, out };
+        }
+    }
+}
+
+/// Asks for what later blocks need. Two lines of memory would have to be waited for one after the
+/// other: that of the slots, then those of their boxes.
+#[inline(always)]
+fn ask_ahead(blocks: &Blocks, stale: &[u32]) {
+    if let Some(&later) = stale.get(2 * AHEAD) {
+        let block = &blocks.blocks[later as usize];
+        prefetch(&block.slots);
+        block.min.iter().chain(&block.max).for_each(prefetch);
+    }
+    if let Some(&later) = stale.get(AHEAD) {
+        for &slot in &blocks.blocks[later as usize].slots {
+            prefetch(blocks.known.get(slot as usize).unwrap_or(&Words::NOTHING));
         }
     }
 }
