@@ -194,8 +194,9 @@ impl Blocks {
     pub(crate) fn release(&mut self, run: &mut Run) {
         self.blocks[run.used()].fill(Block::EMPTY);
         self.hulls[run.used()].fill(Hull::EMPTY);
-        self.stale[run.used()].fill(false);
-        self.news[run.used()].fill(News::default());
+        // Of a block that has run empty too: what it was told before was its node's business.
+        self.stale[run.all()].fill(false);
+        self.news[run.all()].fill(News::default());
         self.free.put(*run);
         *run = Run::EMPTY;
     }

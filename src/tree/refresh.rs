@@ -79,8 +79,8 @@ impl Tree {
         if run.len <= LANES as u32 || first + LANES as u32 <= run.active {
             return;
         }
-        let mut again = self.blocks.news[block].again >> run.active.saturating_sub(first);
         let known = run.active.saturating_sub(first);
+        let mut again = self.blocks.news[block].again >> known;
         while again != 0 {
             let lane = again.trailing_zeros();
             again &= again - 1;
@@ -95,7 +95,8 @@ impl Tree {
         }
         self.touch(node, CONTENT);
         let n = node as usize;
-        if is_review(node, self.tick) && 2 * moved < self.nodes.run[n].active {
+        // A third at rest: the others gather anew.
+        if is_review(node, self.tick) && 3 * moved < 2 * self.nodes.run[n].active {
             self.nodes.run[n].active = 0;
         }
         if self.nodes.retry_at[n] > 0 {
@@ -164,5 +165,52 @@ fn ask_ahead(blocks: &Blocks, stale: &[u32]) {
         for &slot in &blocks.blocks[later as usize].slots {
             prefetch(blocks.known.get(slot as usize).unwrap_or(&Words::NOTHING));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::geom::Aabb;
+    use crate::tree::TreeConfig;
+
+    fn at(slot: u32, shift: f32) -> Aabb {
+        let center = Vec3::new((slot * 7 % 31) as f32, (slot * 11 % 29) as f32, (slot * 13 % 37) as f32);
+        Aabb::from_center(center + shift, Vec3::splat(0.25))
+    }
+
+    /// So many frames in which every tenth object moves, from the given one on.
+    fn play(tree: &mut Tree, first: u32, frames: u32) {
+        for frame in 0..frames {
+            for slot in (first..300).step_by(10) {
+                tree.set_bounds(slot, &at(slot, 0.1 * (1 + frame % 2) as f32));
+            }
+            tree.update();
+            tree.validate().expect("a valid tree");
+        }
+    }
+
+    fn front(tree: &Tree, count: usize) -> Vec<u32> {
+        let mut slots: Vec<u32> = tree.own(tree.root()).iter().flat_map(|block| block.slots).collect();
+        slots.truncate(count);
+        slots.sort_unstable();
+        slots
+    }
+
+    #[test]
+    fn movers_gather_at_the_front_of_their_run() {
+        let mut tree = Tree::new(TreeConfig::default());
+        (0..300).for_each(|slot| tree.insert(slot, &at(slot, 0.0)));
+        tree.update();
+        play(&mut tree, 0, 3);
+        assert_eq!(tree.nodes.run[0].active, 30);
+        assert_eq!(front(&tree, 30), (0..300).step_by(10).collect::<Vec<_>>());
+        tree.remove(20);
+        assert_eq!(tree.nodes.run[0].active, 29, "another one has taken its place");
+        // Those that have come to rest are found out, and others take their places.
+        play(&mut tree, 5, 3 * REVIEW);
+        assert_eq!(front(&tree, 30), (5..300).step_by(10).collect::<Vec<_>>());
     }
 }

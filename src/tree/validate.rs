@@ -44,6 +44,9 @@ impl Tree {
             if self.blocks.around(self.nodes.run[n]) != bounds {
                 return fail("the boxes around its blocks are not around its objects");
             }
+            if self.nodes.run[n].active as usize > node.own {
+                return fail("more movers than objects");
+            }
             if below != node.own {
                 return fail(&format!("{below} objects in its blocks, {} by its length", node.own));
             }
