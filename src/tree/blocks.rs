@@ -114,13 +114,13 @@ impl Blocks {
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) {
         let Some(known) = self.known.get_mut(slot as usize) else { return };
         let location = known.location();
-        // The common case takes one look: a lane has a block, and neither of the others has one.
-        if let Some(stale) = self.stale.get_mut(location as usize / LANES) {
-            *known = Known::new(aabb, [location, NONE]);
-            *stale = true;
+        if location == NONE {
+            return;
+        }
+        *known = Known::new(aabb, [location, NONE]);
+        if location != WAITING {
+            self.stale[location as usize / LANES] = true;
             self.any_stale = true;
-        } else if location == WAITING {
-            *known = Known::new(aabb, [location, NONE]);
         }
     }
 
