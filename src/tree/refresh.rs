@@ -200,6 +200,18 @@ mod tests {
     }
 
     #[test]
+    fn a_new_box_follows_its_object_to_another_block() {
+        let mut tree = Tree::new(TreeConfig::default());
+        (0..40).for_each(|slot| tree.insert(slot, &at(slot, 0.0)));
+        tree.update();
+        tree.set_bounds(39, &at(39, 0.2));
+        tree.remove(0);
+        tree.update();
+        tree.validate().expect("a valid tree");
+        assert_eq!(tree.aabb_of(39), Some(at(39, 0.2)));
+    }
+
+    #[test]
     fn movers_gather_at_the_front_of_their_run() {
         let mut tree = Tree::new(TreeConfig::default());
         (0..300).for_each(|slot| tree.insert(slot, &at(slot, 0.0)));
