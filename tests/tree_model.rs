@@ -20,6 +20,8 @@ enum Op {
     /// A small step: mostly stays in its cell.
     Nudge(usize, Vec3),
     Remove(usize),
+    /// Objects move, and every third time another one goes, all between two updates.
+    Rush(Vec<(usize, Vec3)>),
     /// All but a few objects go: nodes thin out, the root may shrink.
     Purge(usize),
     /// Dual answers for every leaf, from a seed; then the tree adapts.
@@ -64,14 +66,19 @@ fn aabb() -> impl Strategy<Value = Aabb> {
         .prop_map(|(min, size)| Aabb::new(min, (min + size).min(Vec3::MAX)))
 }
 
+fn step() -> impl Strategy<Value = Vec3> {
+    [-0.5f32..0.5, -0.5f32..0.5, -0.5f32..0.5].prop_map(Vec3::from)
+}
+
 fn op() -> impl Strategy<Value = Op> {
     prop_oneof![
         4 => aabb().prop_map(Op::Insert),
         1 => prop::collection::vec(aabb(), 1..120).prop_map(Op::Flood),
         1 => (aabb(), 2usize..80).prop_map(|(b, n)| Op::Flood(vec![b; n])),
         4 => (any::<usize>(), aabb()).prop_map(|(i, b)| Op::Move(i, b)),
-        4 => (any::<usize>(), [-0.5f32..0.5, -0.5f32..0.5, -0.5f32..0.5]).prop_map(|(i, d)| Op::Nudge(i, d.into())),
+        4 => (any::<usize>(), step()).prop_map(|(i, d)| Op::Nudge(i, d)),
         2 => any::<usize>().prop_map(Op::Remove),
+        2 => prop::collection::vec((any::<usize>(), step()), 1..60).prop_map(Op::Rush),
         1 => (0usize..6).prop_map(Op::Purge),
         3 => any::<u32>().prop_map(Op::Vote),
         1 => (1u8..20).prop_map(Op::Rest),
@@ -128,6 +135,19 @@ impl Tested {
         self.model.remove(&id);
     }
 
+    fn nudge(&mut self, i: usize, d: Vec3) {
+        if let Some((id, b)) = self.nth(i) {
+            let moved = Aabb::new(b.min + d, b.max + d);
+            self.set(id, if moved.is_valid() { moved } else { b });
+        }
+    }
+
+    fn remove_nth(&mut self, i: usize) {
+        if let Some((id, _)) = self.nth(i) {
+            self.remove(id);
+        }
+    }
+
     fn apply(&mut self, op: &Op) {
         match op {
             Op::Insert(b) => self.insert(*b),
@@ -137,15 +157,14 @@ impl Tested {
                     self.set(id, *b);
                 }
             }
-            Op::Nudge(i, d) => {
-                if let Some((id, b)) = self.nth(*i) {
-                    let moved = Aabb::new(b.min + d, b.max + d);
-                    self.set(id, if moved.is_valid() { moved } else { b });
-                }
-            }
-            Op::Remove(i) => {
-                if let Some((id, _)) = self.nth(*i) {
-                    self.remove(id);
+            Op::Nudge(i, d) => self.nudge(*i, *d),
+            Op::Remove(i) => self.remove_nth(*i),
+            Op::Rush(steps) => {
+                for (n, &(i, d)) in steps.iter().enumerate() {
+                    self.nudge(i, d);
+                    if n % 3 == 0 {
+                        self.remove_nth(i / 2);
+                    }
                 }
             }
             Op::Purge(keep) => {
@@ -408,7 +427,7 @@ fn leaves_are_as_large_as_the_costs_ask_for() {
 /// A tree that nobody asks anything stays coarse; the first view that asks makes it fine at once.
 #[test]
 fn the_first_view_that_asks_refines_the_tree() {
-    let mut scene = row(2000, TreeConfig::default());
+    let mut scene = row(4000, TreeConfig::default());
     for _ in 0..3 {
         scene.adapt([&mut Ballot(Votes::default())]);
         scene.update();

@@ -3,9 +3,10 @@
 //! In one process, in turns, frame by frame: *write* (the app stores its movers' new boxes and
 //! velocities), *copy* (of all boxes), *scan* (all boxes against a frustum, sixteen at a time), and
 //! the tree with everything on: edits, placement, refit, settling, adaptation. Times are those of
-//! the thread alone. Prints a table of ratios of medians; writes it as CSV, and a plot.
+//! the thread alone. Prints tables of ratios of medians, by number, by manner of moving, and of the
+//! mirror of a world; writes them as CSV, and plots.
 //!
-//! `cargo bench --bench tree_maintenance [-- --quick] [-- --out DIR]`
+//! `cargo bench --bench tree_maintenance [-- --quick] [-- --count N] [-- --out DIR]`
 
 #[path = "../../examples/support/canvas.rs"]
 mod canvas;
@@ -15,21 +16,27 @@ mod chart;
 mod clock;
 mod measure;
 mod plot;
+mod sync;
+mod table;
 mod workload;
 mod yardstick;
 
 use std::path::PathBuf;
 
 use clap::Parser;
-use measure::Row;
-use tercet::tree::TreeConfig;
+use measure::{Asking, Case, Row};
+use table::Table;
+use workload::Manner;
 
 #[derive(Parser)]
 struct Flags {
-    /// Two small workloads and few frames: does it run at all?
+    /// Small workloads and few frames: does it run at all?
     #[arg(long)]
     quick: bool,
-    /// Where table.csv and plot.png go.
+    /// Only worlds of so many boxes.
+    #[arg(long)]
+    count: Option<usize>,
+    /// Where the tables and plots go.
     #[arg(long, default_value = "out/tree_maintenance")]
     out: PathBuf,
     /// What cargo says to every bench.
@@ -39,21 +46,50 @@ struct Flags {
 
 fn main() -> anyhow::Result<()> {
     let flags = Flags::parse();
-    let counts: &[usize] = if flags.quick { &[2_500, 13_550] } else { &[2_500, 13_550, 100_000, 1_000_000] };
     std::fs::create_dir_all(&flags.out)?;
-    let mut csv = csv::Writer::from_path(flags.out.join("table.csv"))?;
-    csv.write_record(Row::NAMES)?;
-    println!("| {} |\n|{}", Row::NAMES.join(" | "), "---|".repeat(Row::NAMES.len()));
-    let mut rows = Vec::new();
-    for &count in counts {
+    let counts = match flags.count {
+        Some(count) => vec![count],
+        None if flags.quick => vec![2_500, 13_550],
+        None => vec![2_500, 13_550, 100_000, 1_000_000],
+    };
+    let measured = |name: &str, count: usize, moving, manner, asking| {
+        let frames = if flags.quick { 20 } else { (40_000_000 / count).clamp(60, 2000) };
+        let runs = if flags.quick { 1 } else { (3_000_000 / count).clamp(1, 3) };
+        measure::run(Case { name: name.to_owned(), count, moving, manner, asking, frames, runs })
+    };
+
+    let mut table = Table::new(&flags.out.join("table.csv"), &table::BY_NUMBER)?;
+    let mut rows: Vec<Row> = Vec::new();
+    for &count in &counts {
         for moving in [0.0, 0.2, 0.5, 1.0] {
-            let frames = if flags.quick { 20 } else { (40_000_000 / count).clamp(60, 2000) };
-            let row = measure::run(count, moving, frames, TreeConfig::default());
-            println!("| {} |", row.cells().join(" | "));
-            csv.write_record(row.cells())?;
+            let row = measured("usual", count, moving, Manner::USUAL, Asking::Nobody);
+            table.add(table::by_number(&row))?;
             rows.push(row);
         }
     }
-    csv.flush()?;
-    plot::save(&flags.out.join("plot.png"), &rows)
+    plot::by_number(&flags.out.join("plot.png"), &rows)?;
+
+    let mut table = Table::new(&flags.out.join("manners.csv"), &table::BY_MANNER)?;
+    let mut rows: Vec<Row> = Vec::new();
+    let usual = Manner::USUAL;
+    for (name, manner, asking) in [
+        ("usual", usual, Asking::Nobody),
+        ("slow: 0.01 m", Manner { step: 0.01, ..usual }, Asking::Nobody),
+        ("fast: 0.5 m", Manner { step: 0.5, ..usual }, Asking::Nobody),
+        ("gathered", Manner { gathered: true, ..usual }, Asking::Nobody),
+        ("large: 0.5 to 5 m", Manner { extent: 5.0, ..usual }, Asking::Nobody),
+        ("fine leaves", usual, Asking::Once),
+        ("fine, adapting", usual, Asking::EachFrame),
+    ] {
+        let row = measured(name, counts[counts.len().min(2) - 1], 0.5, manner, asking);
+        table.add(table::by_manner(&row))?;
+        rows.push(row);
+    }
+    plot::by_manner(&flags.out.join("manners.png"), &rows)?;
+
+    let mut table = Table::new(&flags.out.join("sync.csv"), &sync::NAMES)?;
+    for &count in counts.iter().filter(|&&count| count >= 100_000 || flags.quick) {
+        table.add(sync::cells(count))?;
+    }
+    Ok(())
 }

@@ -4,19 +4,42 @@ use std::hint::black_box;
 
 use tercet::geom::{Aabb, Frustum, View};
 use tercet::scene::{ObjectId, Scene, SceneConfig, Traits};
-use tercet::tree::{TreeConfig, Walk};
+use tercet::tree::{TreeConfig, Votes, Walk};
 
 use crate::clock::{median, seconds};
-use crate::workload::Workload;
+use crate::workload::{Manner, Workload};
 use crate::yardstick::{self, Scan};
 
 /// Frames before the measurement: the first ones build, and make room.
 const WARM_UP: usize = 20;
 
-/// Medians over the frames of one workload, in seconds; queries by view: wide, mid, near.
-pub struct Row {
+/// Who asks the tree about its nodes.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Asking {
+    /// Nobody: leaves stay coarse.
+    Nobody,
+    /// One view did, once: leaves are fine, and stay as they are.
+    Once,
+    /// One view, each frame, about each leaf that its frustum meets: the tree adapts.
+    EachFrame,
+}
+
+/// What is measured.
+pub struct Case {
+    pub name: String,
     pub count: usize,
     pub moving: f64,
+    pub manner: Manner,
+    pub asking: Asking,
+    pub frames: usize,
+    /// The same frames again so many times: what counts of each frame is its least time, for what
+    /// others on the machine add is not the tree's.
+    pub runs: usize,
+}
+
+/// What it came to: medians over the frames, in seconds; queries by view: wide, mid, near.
+pub struct Row {
+    pub case: Case,
     pub write: f64,
     pub copy: f64,
     pub update: f64,
@@ -25,95 +48,111 @@ pub struct Row {
     pub ageing: f64,
     pub scan: [f64; 3],
     pub query: [f64; 3],
-    /// Share of the boxes that each view sees, by the scan, and by the tree, whose planes are a
-    /// little wider, so that no rounding hides anything.
-    pub seen: [[f64; 2]; 3],
+    /// Shares of the objects: cut by a plane, and changing their node, of the movers, each frame.
+    pub straddling: f64,
+    pub leaving: f64,
     pub tree_bytes: f64,
     pub scene_bytes: f64,
 }
 
-impl Row {
-    /// The columns.
-    pub const NAMES: [&str; 16] = [
-        "objects",
-        "moving",
-        "update, µs",
-        "/ write",
-        "/ copy",
-        "/ scan",
-        "worst / median",
-        "last / first",
-        "wide / scan",
-        "mid / scan",
-        "near / scan",
-        "seen wide",
-        "seen mid",
-        "seen near",
-        "tree B/object",
-        "scene B/object",
-    ];
-
-    /// What stands in them.
-    pub fn cells(&self) -> Vec<String> {
-        let over =
-            |what: f64| if what > 0.0 { format!("{:.2}", self.update / what) } else { "–".to_owned() };
-        let mut cells =
-            vec![self.count.to_string(), self.moving.to_string(), format!("{:.1}", self.update * 1e6)];
-        cells.push(if self.moving > 0.0 { over(self.write) } else { "–".to_owned() });
-        cells.extend([over(self.copy), over(self.scan[0])]);
-        cells.extend([format!("{:.1}", self.worst_update / self.update), format!("{:.2}", self.ageing)]);
-        cells.extend((0..3).map(|i| format!("{:.2}", self.query[i] / self.scan[i])));
-        cells.extend(self.seen.map(|[scan, _]| format!("{scan:.4}")));
-        cells.extend([self.tree_bytes, self.scene_bytes].map(|bytes| format!("{bytes:.0}")));
-        cells
-    }
+/// The times of one run, and the scene at its end.
+struct Run {
+    /// Write, copy, update.
+    times: [Vec<f64>; 3],
+    queries: [Query; 3],
+    scene: Scene,
 }
 
-/// Moves `moving` of `count` boxes for so many frames.
-pub fn run(count: usize, moving: f64, frames: usize, tree: TreeConfig) -> Row {
-    let mut load = Workload::new(count, moving);
-    let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
-    let ids: Vec<ObjectId> = load.boxes.iter().map(|&b| scene.insert(b, Traits::default())).collect();
-    scene.update();
-    let mut copied = load.boxes.clone();
-    let views = load.views().map(|(_, view)| view);
-    let mut queries = views.map(Query::new);
-    // A frame in which nothing moves takes less than the clock can tell.
-    let repeat = if moving == 0.0 { 64 } else { 1 };
-    let (mut write, mut copy, mut update) = (Vec::new(), Vec::new(), Vec::new());
-    for frame in 0..WARM_UP + frames {
-        if frame == WARM_UP {
-            write.clear();
-            copy.clear();
-            update.clear();
+/// Measures a case.
+pub fn run(case: Case) -> Row {
+    let mut all = once(&case);
+    for _ in 1..case.runs {
+        let again = once(&case);
+        for (least, times) in all.times.iter_mut().zip(&again.times) {
+            least.iter_mut().zip(times).for_each(|(least, &time)| *least = least.min(time));
         }
-        write.push(seconds(1, || {
-            load.step();
-            black_box(&load.boxes);
-        }));
-        copy.push(seconds(1, || yardstick::copy(black_box(&load.boxes), black_box(&mut copied))));
-        update.push(seconds(repeat, || {
-            scene.sync_moved(ids.iter().copied().zip(load.moved().iter().copied()));
-            scene.adapt::<tercet::Culler<tercet::policy::FrustumOnly>>([]);
-        }));
-        if frame >= WARM_UP && frame % 8 == 0 {
-            queries.iter_mut().for_each(|query| query.run(&scene, &load.boxes));
+        for (all, again) in all.queries.iter_mut().zip(again.queries) {
+            all.scans.extend(again.scans);
+            all.walks.extend(again.walks);
         }
     }
-    let tenth = (frames / 10).max(1);
+    let Run { times: [write, copy, update], queries, scene } = all;
+    let tenth = (case.frames / 10).max(1);
+    let tree = scene.tree();
+    let across: usize =
+        tree.nodes().filter(|node| node.is_leaf && node.is_straddle).map(|node| node.own).sum();
+    let moved = (case.frames + WARM_UP) as f64 * case.count as f64 * case.moving;
     Row {
-        count,
-        moving,
         write: median(&write),
         copy: median(&copy),
         update: median(&update),
         worst_update: update.iter().copied().fold(0.0, f64::max),
-        ageing: median(&update[frames - tenth..]) / median(&update[..tenth]),
+        ageing: median(&update[case.frames - tenth..]) / median(&update[..tenth]),
         scan: queries.each_ref().map(|q| median(&q.scans)),
         query: queries.each_ref().map(|q| median(&q.walks)),
-        seen: queries.each_ref().map(|q| q.seen.map(|n| n as f64 / count as f64)),
-        tree_bytes: scene.tree().bytes() as f64 / count as f64,
-        scene_bytes: scene.bytes() as f64 / count as f64,
+        straddling: across as f64 / case.count as f64,
+        leaving: if moved > 0.0 { tree.stats().moves as f64 / moved } else { 0.0 },
+        tree_bytes: tree.bytes() as f64 / case.count as f64,
+        scene_bytes: scene.bytes() as f64 / case.count as f64,
+        case,
+    }
+}
+
+fn once(case: &Case) -> Run {
+    let mut load = Workload::new(case.count, case.moving, case.manner);
+    let mut scene = Scene::new(SceneConfig { tree: TreeConfig::default(), ..SceneConfig::default() });
+    let ids: Vec<ObjectId> = load.boxes.iter().map(|&b| scene.insert(b, Traits::default())).collect();
+    scene.update();
+    let mut ballot = Ballot(Votes { asks: case.asking != Asking::Nobody, ..Votes::default() });
+    scene.adapt([&mut ballot]);
+    let mut copied = load.boxes.clone();
+    let mut queries = load.views().map(|(_, view)| Query::new(view));
+    // A frame in which nothing moves takes less than the clock can tell.
+    let repeat = if case.moving == 0.0 { 64 } else { 1 };
+    let mut times = [const { Vec::new() }; 3];
+    for frame in 0..WARM_UP + case.frames {
+        let write = seconds(1, || {
+            load.step();
+            black_box(&load.boxes);
+        });
+        let copy = seconds(1, || yardstick::copy(black_box(&load.boxes), black_box(&mut copied)));
+        if case.asking == Asking::EachFrame {
+            ballot.vote(&scene, &queries[1].view);
+        }
+        let update = seconds(repeat, || {
+            scene.sync_moved(ids.iter().copied().zip(load.moved().iter().copied()));
+            scene.adapt([&mut ballot]);
+        });
+        if frame >= WARM_UP {
+            times.iter_mut().zip([write, copy, update]).for_each(|(times, time)| times.push(time));
+            if frame % 8 == 0 {
+                queries.iter_mut().for_each(|query| query.run(&scene, &load.boxes));
+            }
+        }
+    }
+    Run { times, queries, scene }
+}
+
+/// A view's answers: each leaf that its frustum meets is seen in full.
+struct Ballot(Votes);
+
+impl Ballot {
+    fn vote(&mut self, scene: &Scene, view: &View) {
+        let frustum = Frustum::new(view);
+        self.0.asks = true;
+        let leaves = scene.tree().nodes().filter(|node| node.is_leaf && node.own > 0);
+        let met = leaves.filter(|leaf| frustum.intersects(&leaf.bounds));
+        met.for_each(|leaf| self.0.near(leaf.id));
+    }
+}
+
+impl tercet::Voter for Ballot {
+    fn votes(&self) -> &Votes {
+        &self.0
+    }
+
+    fn votes_mut(&mut self) -> &mut Votes {
+        &mut self.0
     }
 }
 
@@ -122,12 +161,11 @@ struct Query {
     view: View,
     scans: Vec<f64>,
     walks: Vec<f64>,
-    seen: [usize; 2],
 }
 
 impl Query {
     fn new(view: View) -> Self {
-        Self { view, scans: Vec::new(), walks: Vec::new(), seen: [0; 2] }
+        Self { view, scans: Vec::new(), walks: Vec::new() }
     }
 
     fn run(&mut self, scene: &Scene, boxes: &[Aabb]) {
@@ -142,7 +180,7 @@ impl Query {
             walk.run(scene.tree(), black_box(&frustum), eye, |_, lanes| found.push(lanes));
             black_box(&found);
         }));
-        self.seen = [scan.count(), found.iter().map(|bits: &u16| bits.count_ones() as usize).sum()];
-        assert!(self.seen[1] >= self.seen[0], "the tree finds all that the scan finds: {:?}", self.seen);
+        let seen: usize = found.iter().map(|bits: &u16| bits.count_ones() as usize).sum();
+        assert!(seen >= scan.count(), "the tree finds all that the scan finds: {seen}");
     }
 }

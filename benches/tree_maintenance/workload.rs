@@ -8,6 +8,25 @@ use tercet::geom::{Aabb, View, Viewport, projection};
 /// Frames that movers go one way before they turn back, so that the world does not drift apart.
 const TURN: u32 = 100;
 
+/// How boxes lie, and how they move.
+#[derive(Clone, Copy)]
+pub struct Manner {
+    /// Metres a frame.
+    pub step: f32,
+    /// Half extents, in tenths of a metre to metres.
+    pub extent: f32,
+    /// Whether they gather: as many at the same density, but in balls with nothing in between.
+    pub gathered: bool,
+}
+
+impl Manner {
+    /// What every row is measured with, unless it says otherwise.
+    pub const USUAL: Self = Self { step: 0.05, extent: 1.0, gathered: false };
+}
+
+/// Balls that gathered boxes lie in, on each axis.
+const BALLS: f32 = 4.0;
+
 /// What the app of the benchmark holds: boxes, and the velocities of the first so many of them.
 pub struct Workload {
     pub boxes: Vec<Aabb>,
@@ -18,16 +37,25 @@ pub struct Workload {
 
 impl Workload {
     /// `count` boxes of half extents 0.1 to 1 m, one in 64 cubic metres, of which a share moves
-    /// 0.05 m a frame.
-    pub fn new(count: usize, moving: f64) -> Self {
+    /// 0.05 m a frame: or in another manner.
+    pub fn new(count: usize, moving: f64, manner: Manner) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(7);
         let side = (64.0 * count as f32).cbrt();
         let mut unit = || (rng.next_u32() >> 8) as f32 / (1 << 24) as f32;
         let mut vec3 =
             |low: f32, high: f32| Vec3::from_array(std::array::from_fn(|_| unit() * (high - low) + low));
-        let boxes = (0..count).map(|_| Aabb::from_center(vec3(0.0, side), vec3(0.1, 1.0))).collect();
+        let ball = side / BALLS;
+        let mut aabb = || {
+            let mut at = vec3(0.0, side);
+            if manner.gathered {
+                let middle = ((at / ball).floor() + 0.5) * ball;
+                at = middle + (at - middle) * 0.3;
+            }
+            Aabb::from_center(at, vec3(0.1, 1.0) * manner.extent)
+        };
+        let boxes = (0..count).map(|_| aabb()).collect();
         let movers = (count as f64 * moving) as usize;
-        let velocities = (0..movers).map(|_| vec3(-1.0, 1.0).normalize_or_zero() * 0.05).collect();
+        let velocities = (0..movers).map(|_| vec3(-1.0, 1.0).normalize_or_zero() * manner.step).collect();
         Self { boxes, velocities, side, frame: 0 }
     }
 

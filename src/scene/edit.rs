@@ -30,7 +30,7 @@ impl Scene {
     pub fn sync_moved(&mut self, moved: impl IntoIterator<Item = (ObjectId, Aabb)>) -> usize {
         let mut stale = 0;
         for (id, bounds) in moved {
-            if self.objects.is_plain(id) && is_valid(&bounds) {
+            if self.objects.is_plain(id) && is_surely_valid(&bounds) {
                 self.tree.set_bounds(id.slot() as u32, &bounds);
             } else if !self.set_bounds(id, bounds) {
                 stale += 1;
@@ -117,12 +117,13 @@ impl Scene {
     }
 }
 
-/// [`Aabb::is_valid`], without a branch: of two numbers in order, neither is NaN, and both are
-/// finite if the lesser one is above −∞ and the greater one below ∞.
+/// Whether a box is certainly valid, without a branch: its size is neither NaN, negative nor
+/// infinite, so that its corners are finite and in order. A box larger than f32 can say is not
+/// certain.
 #[inline]
-fn is_valid(bounds: &Aabb) -> bool {
-    let (min, max) = (Vec3A::from(bounds.min), Vec3A::from(bounds.max));
-    (min.cmple(max) & min.cmpge(Vec3A::MIN) & max.cmple(Vec3A::MAX)).all()
+fn is_surely_valid(bounds: &Aabb) -> bool {
+    let size = Vec3A::from(bounds.max) - Vec3A::from(bounds.min);
+    (size.cmpge(Vec3A::ZERO) & size.cmple(Vec3A::MAX)).all()
 }
 
 /// The box with its slack. A slack that is not a length makes the box bad, not smaller.

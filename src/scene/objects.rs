@@ -7,6 +7,7 @@ use hecs::Entity;
 
 use super::components::{Batch, Mobility, Traits};
 use super::object::{ObjectId, ObjectRef};
+use crate::tree::grow;
 
 /// Where an object is kept, and how it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,11 +58,11 @@ pub(crate) struct Objects {
 impl Objects {
     pub(crate) fn insert(&mut self, entity: Entity, traits: Traits) -> ObjectId {
         let slot = self.free.pop().unwrap_or_else(|| {
-            let slot = self.generation.len() as u32;
-            self.generation.push(SPECIAL);
-            self.entity.push(Entity::DANGLING);
-            self.state.push(Place::Free as State);
-            slot
+            let slot = self.generation.len();
+            grow(&mut self.generation, slot + 1, SPECIAL);
+            grow(&mut self.entity, slot + 1, Entity::DANGLING);
+            grow(&mut self.state, slot + 1, Place::Free as State);
+            slot as u32
         });
         self.entity[slot as usize] = entity;
         self.state[slot as usize] = Place::Tree as State;

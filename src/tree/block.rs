@@ -1,6 +1,7 @@
 //! Sixteen boxes, each coordinate contiguous.
 
 use super::blocks::NONE;
+use super::hull::Hull;
 use crate::geom::Aabb;
 
 /// Objects a block: one 512-bit register a coordinate.
@@ -31,16 +32,33 @@ impl Block {
 
     pub(super) fn put(&mut self, lane: usize, slot: u32, aabb: &Aabb) {
         self.slots[lane] = slot;
-        self.set(lane, aabb);
-    }
-
-    #[inline(always)]
-    pub(super) fn set(&mut self, lane: usize, aabb: &Aabb) {
         for axis in 0..3 {
             self.min[axis][lane] = aabb.min[axis];
             self.max[axis][lane] = aabb.max[axis];
         }
     }
+
+    /// The box around all lanes.
+    pub(super) fn hull(&self) -> Hull {
+        let mut all = Aabb::EMPTY;
+        for axis in 0..3 {
+            all.min[axis] = extreme(&self.min[axis], lesser);
+            all.max[axis] = extreme(&self.max[axis], greater);
+        }
+        Hull::around(&all)
+    }
+}
+
+/// The least or the greatest of a row: four at a time, which is what every machine can do at once.
+#[inline(always)]
+fn extreme(row: &[f32; LANES], of: impl Fn(f32, f32) -> f32) -> f32 {
+    let mut four = [row[0], row[1], row[2], row[3]];
+    for next in row[4..].chunks_exact(4) {
+        for (most, &next) in four.iter_mut().zip(next) {
+            *most = of(*most, next);
+        }
+    }
+    of(of(four[0], four[1]), of(four[2], four[3]))
 }
 
 /// The smallest box around two, neither of which is NaN anywhere: two instructions an axis.

@@ -10,8 +10,13 @@
 //! A node's objects fill a *run* of consecutive blocks, dense from the front. Lanes past the end
 //! hold the empty box, so that loops over a run need no tail. An edit touches six lines of memory
 //! in a block but one in `known`: so edits go there, and the blocks follow once an update.
+//!
+//! Objects that keep moving gather at the front of their run, so that most blocks are of movers
+//! alone or of objects that stand still: the latter are not touched.
 
 use super::block::{Block, LANES};
+use super::gather::Words;
+use super::hull::Hull;
 use super::runs::{FreeRuns, Run};
 use crate::geom::Aabb;
 
@@ -26,30 +31,46 @@ const REGION: usize = 64;
 /// The arena of blocks, with the way from an object to its lane.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blocks {
-    blocks: Vec<Block>,
+    pub(super) blocks: Vec<Block>,
+    /// The box around each block.
+    pub(super) hulls: Vec<Hull>,
     /// The node that each block belongs to.
-    owner: Vec<u32>,
-    /// A bit for each lane whose object has a new box since the last refresh.
-    moved: Vec<u16>,
-    /// Whether there is any such bit.
-    stale: bool,
+    pub(super) owner: Vec<u32>,
+    /// Whether any object of a block has a new box since the last refresh.
+    pub(super) stale: Vec<bool>,
+    /// Whether there is any such block.
+    pub(super) any_stale: bool,
+    /// What the last refresh of each block found.
+    pub(super) news: Vec<News>,
     free: FreeRuns,
     /// By object slot.
-    known: Vec<Known>,
+    pub(super) known: Vec<Known>,
 }
 
-/// What is known of an object. Half a line of memory, so that it never lies in two.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-struct Known {
-    /// Its newest box.
-    aabb: Aabb,
-    /// Block × 16 + lane; [`NONE`] for an object that is not in the tree, or [`WAITING`].
-    location: u32,
+/// What the refresh of a block found: a bit for each lane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct News {
+    /// It moved.
+    pub(super) moved: u16,
+    /// It moved, and had the time before.
+    pub(super) again: u16,
+    /// Its node may not hold it any more.
+    pub(super) out: u16,
 }
+
+/// What is known of an object: its newest box, and in the seventh word where it is (block × 16 +
+/// lane; [`NONE`] for an object that is not in the tree, or [`WAITING`]).
+type Known = Words;
 
 impl Known {
-    const NOTHING: Self = Self { aabb: Aabb::EMPTY, location: NONE };
+    #[inline]
+    fn location(&self) -> u32 {
+        self.0[6]
+    }
+
+    fn set_location(&mut self, location: u32) {
+        self.0[6] = location;
+    }
 }
 
 impl Blocks {
@@ -66,7 +87,7 @@ impl Blocks {
 
     /// The newest box of an object, if the tree knows it.
     pub(crate) fn aabb_of(&self, slot: u32) -> Option<Aabb> {
-        self.known.get(slot as usize).filter(|known| known.location != NONE).map(|known| known.aabb)
+        self.known.get(slot as usize).filter(|known| known.location() != NONE).map(Words::aabb)
     }
 
     /// Takes an object's box; its lane is given later.
@@ -75,30 +96,31 @@ impl Blocks {
         if s >= self.known.len() {
             grow(&mut self.known, s + 1, Known::NOTHING);
         }
-        self.known[s] = Known { aabb: *aabb, location: WAITING };
+        self.known[s] = Known::new(aabb, [WAITING, NONE]);
     }
 
     /// Whether an object has a box, but no lane yet.
     pub(crate) fn is_waiting(&self, slot: u32) -> bool {
-        self.known.get(slot as usize).is_some_and(|known| known.location == WAITING)
+        self.known.get(slot as usize).is_some_and(|known| known.location() == WAITING)
     }
 
     /// Forgets an object that waits for its lane.
     pub(crate) fn renounce(&mut self, slot: u32) {
-        self.known[slot as usize].location = NONE;
+        self.known[slot as usize].set_location(NONE);
     }
 
     /// Notes the new box of an object that the tree knows. O(1), and no block is touched.
     #[inline]
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) {
         let Some(known) = self.known.get_mut(slot as usize) else { return };
-        let location = known.location;
+        let location = known.location();
         if location == NONE {
             return;
         }
-        known.aabb = *aabb;
+        *known = Known::new(aabb, [location, NONE]);
         if location != WAITING {
-            self.mark(location as usize);
+            self.stale[location as usize / LANES] = true;
+            self.any_stale = true;
         }
     }
 
@@ -109,36 +131,45 @@ impl Blocks {
         }
         let location = run.location(run.len);
         run.len += 1;
-        self.blocks[location as usize / LANES].put(location as usize % LANES, slot, aabb);
-        self.known[slot as usize].location = location;
+        self.put(location, slot, aabb);
+        self.hulls[location / LANES].unite(&Hull::around(aabb));
     }
 
-    /// Takes an object out of its run; the last one of the run takes its lane. Amortised O(1).
+    /// Takes an object out of its run; the last mover takes its lane, if it was one, and the last
+    /// object of the run the lane that is left. Amortised O(1).
     pub(crate) fn remove(&mut self, run: &mut Run, node: u32, slot: u32) {
-        let Some(hole) = self.location(slot) else { return };
-        run.len -= 1;
-        let last = run.location(run.len) as usize;
-        let (last_block, last_lane) = (last / LANES, last % LANES);
-        // What the last one has still to be refreshed by goes with it.
-        let stale = self.moved[last_block] & (1 << last_lane) != 0;
-        self.moved[hole / LANES] &= !(1 << (hole % LANES));
-        self.moved[last_block] &= !(1 << last_lane);
-        if hole != last {
-            let mover = self.blocks[last_block].slots[last_lane];
-            let aabb = self.blocks[last_block].aabb(last_lane);
-            self.blocks[hole / LANES].put(hole % LANES, mover, &aabb);
-            self.known[mover as usize].location = hole as u32;
-            if stale {
-                self.mark(hole);
-            }
+        let Some(mut hole) = self.location(slot) else { return };
+        if hole < run.location(run.active) {
+            run.active -= 1;
+            hole = self.fill_hole(hole, run.location(run.active));
         }
-        self.blocks[last_block].put(last_lane, NONE, &Aabb::EMPTY);
-        self.known[slot as usize].location = NONE;
+        run.len -= 1;
+        hole = self.fill_hole(hole, run.location(run.len));
+        self.blocks[hole / LANES].put(hole % LANES, NONE, &Aabb::EMPTY);
+        self.measure(hole / LANES);
+        self.known[slot as usize].set_location(NONE);
         if run.len == 0 {
             self.release(run);
         } else if run.is_sparse() {
             self.resize(run, node, Run::class_for(2 * run.len));
         }
+    }
+
+    /// Makes an object of a run, by its index there, one of the movers at its front.
+    pub(super) fn promote(&mut self, run: &mut Run, index: u32) {
+        let (from, to) = (run.location(index), run.location(run.active));
+        run.active += 1;
+        if from == to {
+            return;
+        }
+        let (mover, still) = (self.item(from), self.item(to));
+        self.put(to, mover.0, &mover.1);
+        self.put(from, still.0, &still.1);
+        self.news[from / LANES].moved &= !(1 << (from % LANES));
+        self.measure(to / LANES);
+        self.measure(from / LANES);
+        self.follow(from, to);
+        self.follow(to, from);
     }
 
     /// Makes room for `count` objects in a run.
@@ -148,10 +179,24 @@ impl Blocks {
         }
     }
 
+    /// Sees to it that there is room for as many blocks as objects on the move will come to take, so
+    /// that no later update stops to move the arena.
+    pub(crate) fn leave_room(&mut self) {
+        let more = self.blocks.len().div_ceil(4);
+        self.blocks.reserve_exact(more);
+        self.hulls.reserve_exact(more);
+        self.owner.reserve_exact(more);
+        self.stale.reserve_exact(more);
+        self.news.reserve_exact(more);
+    }
+
     /// Gives a run's blocks back. The locations of its objects are the caller's business.
     pub(crate) fn release(&mut self, run: &mut Run) {
         self.blocks[run.used()].fill(Block::EMPTY);
-        self.moved[run.used()].fill(0);
+        self.hulls[run.used()].fill(Hull::EMPTY);
+        // Of a block that has run empty too: what it was told before was its node's business.
+        self.stale[run.all()].fill(false);
+        self.news[run.all()].fill(News::default());
         self.free.put(*run);
         *run = Run::EMPTY;
     }
@@ -168,68 +213,83 @@ impl Blocks {
         })
     }
 
-    /// Brings the blocks in step with the boxes, and tells of each that changed whose it is, and how
-    /// many of its objects moved. O(moved objects), and
-    /// a look at two bytes for every sixteen that have not, unless none has.
-    pub(super) fn refresh(&mut self, mut changed: impl FnMut(u32, u32)) {
-        if !std::mem::take(&mut self.stale) {
-            return;
-        }
-        for (region, moved) in self.moved.chunks_mut(REGION).enumerate() {
-            if moved.iter().fold(0, |any, m| any | m) == 0 {
+    /// Lists the blocks whose objects have new boxes, in order, and holds them for refreshed. A look
+    /// at a byte for every block.
+    pub(super) fn take_stale(&mut self, list: &mut Vec<u32>) {
+        for (region, stale) in self.stale.chunks_mut(REGION).enumerate() {
+            if !stale.iter().fold(false, |any, &stale| any | stale) {
                 continue;
             }
-            let first = region * REGION;
-            let owners = &self.owner[first..];
-            for ((block, moved), &owner) in self.blocks[first..].iter_mut().zip(moved).zip(owners) {
-                let mut rest = std::mem::take(moved);
-                if rest == 0 {
-                    continue;
-                }
-                changed(owner, rest.count_ones());
-                if rest == u16::MAX {
-                    // All of them: no looking for the next one.
-                    for lane in 0..LANES {
-                        block.set(lane, &self.known[block.slots[lane] as usize].aabb);
-                    }
-                    continue;
-                }
-                while rest != 0 {
-                    let lane = rest.trailing_zeros() as usize % LANES;
-                    rest &= rest - 1;
-                    block.set(lane, &self.known[block.slots[lane] as usize].aabb);
+            for (i, stale) in stale.iter_mut().enumerate() {
+                if std::mem::take(stale) {
+                    list.push((region * REGION + i) as u32);
                 }
             }
         }
+    }
+
+    /// The box around the objects of a run.
+    pub(super) fn around(&self, run: Run) -> Aabb {
+        let mut all = Hull::EMPTY;
+        for hull in &self.hulls[run.used()] {
+            all.unite(hull);
+        }
+        all.aabb()
     }
 
     /// Memory held, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let block = size_of::<Block>() + size_of::<u32>() + size_of::<u16>();
+        let block = size_of::<Block>() + size_of::<Hull>() + size_of::<u32>() + 1 + size_of::<News>();
         self.blocks.capacity() * block + self.known.capacity() * size_of::<Known>() + self.free.bytes()
     }
 
-    #[inline]
-    fn mark(&mut self, location: usize) {
-        let block = location / LANES;
-        self.moved[block] |= 1 << (location % LANES);
-        self.stale = true;
+    fn item(&self, location: usize) -> (u32, Aabb) {
+        let (block, lane) = (&self.blocks[location / LANES], location % LANES);
+        (block.slots[lane], block.aabb(lane))
+    }
+
+    fn put(&mut self, location: usize, slot: u32, aabb: &Aabb) {
+        self.blocks[location / LANES].put(location % LANES, slot, aabb);
+        self.known[slot as usize].set_location(location as u32);
+    }
+
+    /// Moves an object to the lane of one that is gone; returns the lane that it leaves.
+    fn fill_hole(&mut self, hole: usize, from: usize) -> usize {
+        if hole != from {
+            let (slot, aabb) = self.item(from);
+            self.put(hole, slot, &aabb);
+            self.measure(hole / LANES);
+            self.follow(from, hole);
+        }
+        from
+    }
+
+    /// What an object has still to be refreshed by goes with it.
+    fn follow(&mut self, from: usize, to: usize) {
+        self.stale[to / LANES] |= self.stale[from / LANES];
+    }
+
+    fn measure(&mut self, block: usize) {
+        self.hulls[block] = self.blocks[block].hull();
     }
 
     fn location(&self, slot: u32) -> Option<usize> {
-        self.known.get(slot as usize).map(|known| known.location as usize).filter(|&l| l < WAITING as usize)
+        self.known.get(slot as usize).map(|known| known.location() as usize).filter(|&l| l < WAITING as usize)
     }
 
     /// Moves a run to one of another class, which must hold its objects.
     fn resize(&mut self, run: &mut Run, node: u32, class: u8) {
         let mut new = self.take_free(class, node);
         new.len = run.len;
+        new.active = run.active;
         for (from, to) in run.used().zip(new.all()) {
             self.blocks[to] = self.blocks[from];
-            self.moved[to] = self.moved[from];
+            self.hulls[to] = self.hulls[from];
+            self.stale[to] = self.stale[from];
+            self.news[to] = self.news[from];
             for (lane, &slot) in self.blocks[to].slots.iter().enumerate() {
                 if slot != NONE {
-                    self.known[slot as usize].location = (to * LANES + lane) as u32;
+                    self.known[slot as usize].set_location((to * LANES + lane) as u32);
                 }
             }
         }
@@ -242,8 +302,10 @@ impl Blocks {
             let run = Run::new(self.blocks.len() as u32, class);
             let total = run.all().end;
             grow(&mut self.blocks, total, Block::EMPTY);
+            grow(&mut self.hulls, total, Hull::EMPTY);
             grow(&mut self.owner, total, NONE);
-            grow(&mut self.moved, total, 0);
+            grow(&mut self.stale, total, false);
+            grow(&mut self.news, total, News::default());
             run
         });
         self.owner[run.all()].fill(node);
@@ -251,10 +313,14 @@ impl Blocks {
     }
 }
 
-/// Lengthens an array, with an eighth to spare: doubling would leave a third of the memory unused.
-pub(super) fn grow<T: Clone>(array: &mut Vec<T>, len: usize, value: T) {
+/// An array that grows has room for this part of it to spare: with twice the room, as is usual, a third
+/// of the memory would lie unused.
+const SPARE: usize = 8;
+
+/// Lengthens an array, with some room to spare.
+pub(crate) fn grow<T: Clone>(array: &mut Vec<T>, len: usize, value: T) {
     if len > array.capacity() {
-        array.reserve_exact(len + len / 8 - array.len());
+        array.reserve_exact(len + len / SPARE - array.len());
     }
     array.resize(len, value);
 }

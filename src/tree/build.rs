@@ -83,6 +83,7 @@ impl Tree {
             items.clear();
             self.scratch = items;
         }
+        self.blocks.leave_room();
         // A scene is rarely loaded twice: the build's own memory is as large as the scene.
         self.scratch = Vec::new();
         self.stack = Vec::new();

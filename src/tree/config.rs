@@ -138,7 +138,7 @@ impl TreeConfig {
             tight_boxes: TightBoxes::Always,
             settle_frames: 4,
             bulk_leaf: 2,
-            unasked_leaf: 128,
+            unasked_leaf: 512,
             cooldown: 30,
             merge_below_split: true,
             budget: 1024,

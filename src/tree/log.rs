@@ -30,13 +30,15 @@ pub enum Edit {
     },
 }
 
-/// The latest edits, numbered from the beginning. Bounded: a reader that falls behind starts its
-/// history anew.
+/// The latest edits, numbered from the beginning. Bounded in number and age, so that a world that
+/// goes to and fro needs no more memory in time: a reader that falls behind starts its history anew.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EditLog {
     edits: VecDeque<Edit>,
     /// The number of the first edit kept.
     start: u64,
+    /// The number that the next edit had at the last forgetting.
+    old: u64,
 }
 
 impl EditLog {
@@ -50,6 +52,19 @@ impl EditLog {
             self.start += 1;
         }
         self.edits.push_back(edit);
+    }
+
+    /// Edits are kept for as many updates at least, and for twice as many at most.
+    const AGE: u32 = 1024;
+
+    /// Forgets edits that are too old, every now and then.
+    pub(crate) fn forget(&mut self, tick: u32) {
+        if tick.is_multiple_of(Self::AGE) {
+            let gone = self.old.saturating_sub(self.start);
+            self.edits.drain(..gone as usize);
+            self.start += gone;
+            self.old = self.end();
+        }
     }
 
     /// The number that the next edit will have.

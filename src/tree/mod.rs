@@ -11,11 +11,13 @@ mod block;
 mod blocks;
 mod build;
 mod config;
+mod gather;
+mod hull;
 mod log;
-mod measure;
 mod node;
 mod place;
 mod refit;
+mod refresh;
 mod runs;
 mod settle;
 mod split;
@@ -34,6 +36,7 @@ pub use visit::Walk;
 
 use crate::geom::Aabb;
 use blocks::Blocks;
+pub(crate) use blocks::grow;
 use node::Nodes;
 use refit::Dirty;
 
@@ -64,6 +67,8 @@ pub struct Tree {
     stats: TreeStats,
     /// Counts updates; stamps of nodes compare with it.
     tick: u32,
+    /// Reused by each refresh: blocks in which objects have moved.
+    stale: Vec<u32>,
     /// Objects whose new box their node does not hold.
     leavers: Vec<u32>,
     /// Objects that have no node yet; some may have been removed since.
@@ -107,6 +112,7 @@ impl Tree {
             log: EditLog::default(),
             stats: TreeStats::default(),
             tick: 1,
+            stale: Vec::new(),
             leavers: Vec::new(),
             arrivals: Vec::new(),
             waiting: 0,

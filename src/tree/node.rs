@@ -206,13 +206,6 @@ impl Nodes {
         self.holds(node, aabb) && (self.is_leaf(node) || self.side(node, aabb) == Role::Straddle)
     }
 
-    /// Whether a node keeps every object within a box: false where that depends on the object.
-    pub(crate) fn keeps_all_within(&self, node: u32, bounds: &Aabb) -> bool {
-        let n = node as usize;
-        self.is_leaf(node)
-            && (node == 0 || self.straddled[n].is_nan_mask().all() && self.cell[n].contains(bounds))
-    }
-
     /// Which child of an inner node a box belongs to.
     pub(crate) fn side(&self, node: u32, aabb: &Aabb) -> Role {
         side(aabb, self.axis[node as usize] as usize, self.plane[node as usize])

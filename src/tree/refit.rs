@@ -3,7 +3,6 @@
 use super::Tree;
 use super::block::union;
 use super::blocks::NONE;
-use super::measure::{self, Moved};
 use super::node::Nodes;
 
 /// The node needs its box refitted.
@@ -61,6 +60,7 @@ impl Tree {
     /// what has changed. O(edits · depth), and next to nothing for a tree without edits.
     pub(crate) fn update(&mut self) {
         self.tick = self.tick.wrapping_add(1);
+        self.log.forget(self.tick);
         self.refresh();
         self.relocate();
         self.place_arrivals();
@@ -68,26 +68,6 @@ impl Tree {
         self.collapse_thinned();
         self.shrink_root();
         self.refit();
-    }
-
-    /// Takes the moved objects' boxes over into the blocks, and lists those that have left.
-    pub(super) fn refresh(&mut self) {
-        let build_from = self.build_from();
-        let Self { blocks, nodes, dirty, leavers, crowded, .. } = self;
-        blocks.refresh(|node, moved| {
-            dirty.touch(nodes, node, CONTENT);
-            let n = node as usize;
-            if nodes.retry_at[n] > 0 {
-                // What could not be separated may be by now: every move brings the next try nearer.
-                nodes.retry_at[n] = nodes.retry_at[n].saturating_sub(moved);
-                if nodes.is_leaf(node) && nodes.run[n].len >= build_from.max(nodes.retry_at[n]) {
-                    crowded.push(node);
-                }
-            }
-        });
-        for list in &dirty.levels[..dirty.deep] {
-            pulp::Arch::new().dispatch(Moved { list, blocks, nodes, leavers });
-        }
     }
 
     /// Marks a node for the next refit.
@@ -106,10 +86,7 @@ impl Tree {
                 if why == 0 || !nodes.is_alive(node) {
                     continue;
                 }
-                // A leaf whose objects have only moved was measured as they did.
-                let measured = nodes.is_leaf(node) && why & REGROUPED == 0;
-                let mut bounds =
-                    if measured { nodes.bounds[n] } else { measure::around(blocks.of(nodes.run[n])) };
+                let mut bounds = blocks.around(nodes.run[n]);
                 for child in nodes.children(node) {
                     bounds = union(&bounds, &nodes.bounds[child as usize]);
                 }

@@ -13,15 +13,17 @@ pub(crate) struct Run {
     class: u8,
     /// Objects in it.
     pub(crate) len: u32,
+    /// How many of them, at its front, keep moving.
+    pub(super) active: u32,
 }
 
 impl Run {
     /// A run without any block.
-    pub(crate) const EMPTY: Self = Self { first: NONE, class: 0, len: 0 };
+    pub(crate) const EMPTY: Self = Self { first: NONE, class: 0, len: 0, active: 0 };
 
     /// A run that begins with this block and holds nothing yet.
     pub(super) fn new(first: u32, class: u8) -> Self {
-        Self { first, class, len: 0 }
+        Self { first, class, len: 0, active: 0 }
     }
 
     /// The least class that has room for so many objects.
@@ -55,8 +57,13 @@ impl Run {
     }
 
     /// Where its object of this index is: block × 16 + lane.
-    pub(super) fn location(self, index: u32) -> u32 {
-        self.first * LANES as u32 + index
+    pub(super) fn location(self, index: u32) -> usize {
+        self.first as usize * LANES + index as usize
+    }
+
+    /// The index of an object by where it is.
+    pub(super) fn index(self, location: usize) -> u32 {
+        (location - self.first as usize * LANES) as u32
     }
 }
 

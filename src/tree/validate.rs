@@ -41,6 +41,12 @@ impl Tree {
             if !node.is_leaf && node.own > 0 && self.config.straddlers != Straddlers::StayInParent {
                 return fail("an inner node has objects of its own");
             }
+            if self.blocks.around(self.nodes.run[n]) != bounds {
+                return fail("the boxes around its blocks are not around its objects");
+            }
+            if self.nodes.run[n].active as usize > node.own {
+                return fail("more movers than objects");
+            }
             if below != node.own {
                 return fail(&format!("{below} objects in its blocks, {} by its length", node.own));
             }

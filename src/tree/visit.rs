@@ -5,19 +5,20 @@
 //! sixteen objects at once. The arithmetic is [`Frustum::classify`]'s, operation by operation
 //! (nothing is fused), so the answers are the same on every machine.
 
+use std::any::Any;
+
 use glam::Vec4;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Simd, WithSimd, b16};
 
 use super::Tree;
 use super::block::{Block, LANES};
-use super::measure::bits_of;
 use crate::geom::{Aabb, Frustum};
 
 /// A walk through the tree by a view's frustum; kept, it needs no memory from the second on.
 #[derive(Clone, Debug, Default)]
 pub struct Walk {
-    /// Nodes that meet the frustum, twice the index, and one more if they lie wholly within.
-    stack: Vec<u32>,
+    /// Nodes that meet the frustum, and a bit for each plane that their boxes cross.
+    stack: Vec<(u32, u16)>,
 }
 
 impl Walk {
@@ -44,7 +45,7 @@ struct Visit<'a, F> {
     tree: &'a Tree,
     planes: Planes,
     eye: Vec4,
-    stack: &'a mut Vec<u32>,
+    stack: &'a mut Vec<(u32, u16)>,
     found: F,
 }
 
@@ -54,10 +55,9 @@ impl<F: FnMut(&Block, u16)> WithSimd for Visit<'_, F> {
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
         let nodes = &self.tree.nodes;
-        self.push(simd, 0, false);
-        while let Some(entry) = self.stack.pop() {
-            let (node, within) = (entry >> 1, entry & 1 != 0);
-            self.own(simd, node, within);
+        self.push(simd, 0, Planes::ALL);
+        while let Some((node, crossed)) = self.stack.pop() {
+            self.own(simd, node, crossed);
             let first = nodes.child[node as usize];
             if first == super::blocks::NONE {
                 continue;
@@ -69,7 +69,7 @@ impl<F: FnMut(&Block, u16)> WithSimd for Visit<'_, F> {
             };
             let [far, near] = if high_is_nearer { [first, first + 1] } else { [first + 1, first] };
             for child in [far, first + 2, near] {
-                self.push(simd, child, within);
+                self.push(simd, child, crossed);
             }
         }
     }
@@ -78,37 +78,32 @@ impl<F: FnMut(&Block, u16)> WithSimd for Visit<'_, F> {
 impl<F: FnMut(&Block, u16)> Visit<'_, F> {
     /// Puts a node on the way, unless it is empty or outside.
     #[inline(always)]
-    fn push<S: Simd>(&mut self, simd: S, node: u32, within: bool) {
+    fn push<S: Simd>(&mut self, simd: S, node: u32, mut crossed: u16) {
         if self.tree.nodes.below[node as usize] == 0 {
             return;
         }
-        let within = within || {
-            let [greatest, least] = self.planes.range(simd, &self.tree.nodes.bounds[node as usize]);
-            if (0..Planes::COUNT).fold(false, |any, i| any | (greatest[i] < 0.0)) {
+        // Below a node that lies within all planes, everything does.
+        if crossed != 0 {
+            let [outside, across] = self.planes.classify(simd, &self.tree.nodes.bounds[node as usize]);
+            if outside != 0 {
                 return;
             }
-            (0..Planes::COUNT).fold(true, |all, i| all & (least[i] >= 0.0))
-        };
-        self.stack.push(node << 1 | u32::from(within));
+            crossed = across;
+        }
+        self.stack.push((node, crossed));
     }
 
     /// Hands a node's own objects over.
     #[inline(always)]
-    fn own<S: Simd>(&mut self, simd: S, node: u32, within: bool) {
+    fn own<S: Simd>(&mut self, simd: S, node: u32, crossed: u16) {
         let run = self.tree.nodes.run[node as usize];
-        if run.len == 0 {
-            return;
-        }
         let mut left = run.len as usize;
-        let crossed = if within {
-            [1.0; Planes::ROOM]
-        } else {
-            self.planes.range(simd, &self.tree.nodes.bounds[node as usize])[1]
-        };
+        let mut edges = [Edge::NONE; Planes::COUNT];
+        let edges = self.planes.edges(crossed, &self.tree.nodes.bounds[node as usize], &mut edges);
         for block in self.tree.blocks.of(run) {
             let held = if left < LANES { (1 << left) - 1 } else { u16::MAX };
             left = left.saturating_sub(LANES);
-            let lanes = if within { held } else { held & !self.planes.outside(simd, block, &crossed) };
+            let lanes = if crossed == 0 { held } else { held & !outside(simd, block, edges) };
             if lanes != 0 {
                 (self.found)(block, lanes);
             }
@@ -126,6 +121,7 @@ struct Planes {
 
 impl Planes {
     const COUNT: usize = 6;
+    const ALL: u16 = (1 << Self::COUNT) - 1;
     /// As many as the widest register has lanes.
     const ROOM: usize = 16;
 
@@ -146,14 +142,13 @@ impl Planes {
         all
     }
 
-    /// The greatest and the least value of each plane's form over a valid box.
+    /// A bit for each plane that a valid box is outside of, and for each that it does not lie within.
     #[inline(always)]
-    fn range<S: Simd>(&self, simd: S, aabb: &Aabb) -> [[f32; Self::ROOM]; 2] {
-        let mut result = [[0.0; Self::ROOM]; 2];
-        let [greatest, least] = &mut result;
-        let (greatest, least) = (S::as_mut_simd_f32s(greatest).0, S::as_mut_simd_f32s(least).0);
+    fn classify<S: Simd>(&self, simd: S, aabb: &Aabb) -> [u16; 2] {
+        let zero = simd.splat_f32s(0.0);
+        let (mut outside, mut across) = (0, 0);
         for i in 0..Self::COUNT.div_ceil(S::F32_LANES) {
-            let (mut most, mut fewest) = ([simd.splat_f32s(0.0); 3], [simd.splat_f32s(0.0); 3]);
+            let (mut most, mut fewest) = ([zero; 3], [zero; 3]);
             for axis in 0..3 {
                 let (low, high) = (simd.splat_f32s(aabb.min[axis]), simd.splat_f32s(aabb.max[axis]));
                 let upper = S::as_simd_f32s(&self.upper[axis]).0[i];
@@ -164,42 +159,81 @@ impl Planes {
                 most[axis] = simd.max_f32s(simd.max_f32s(a, b), simd.max_f32s(c, d));
                 fewest[axis] = simd.min_f32s(simd.min_f32s(a, b), simd.min_f32s(c, d));
             }
-            let outer = S::as_simd_f32s(&self.outer).0[i];
-            let inner = S::as_simd_f32s(&self.inner).0[i];
-            greatest[i] = simd.add_f32s(sum(simd, most), outer);
-            least[i] = simd.add_f32s(sum(simd, fewest), inner);
+            let greatest = simd.add_f32s(sum(simd, most), S::as_simd_f32s(&self.outer).0[i]);
+            let least = simd.add_f32s(sum(simd, fewest), S::as_simd_f32s(&self.inner).0[i]);
+            outside |= bits_of(simd, simd.less_than_f32s(greatest, zero), i);
+            across |= bits_of(simd, simd.less_than_f32s(least, zero), i);
         }
-        result
+        [outside, across]
     }
 
-    /// The lanes of a block that are outside one of the planes that `crossed` is negative for.
+    /// The planes that a node crosses, made ready for its blocks.
     #[inline(always)]
-    fn outside<S: Simd>(&self, simd: S, block: &Block, crossed: &[f32; Self::ROOM]) -> u16 {
-        let mut bits = 0;
-        for i in 0..LANES / S::F32_LANES {
-            let mut least = simd.splat_f32s(0.0);
-            for (plane, &form) in crossed.iter().enumerate().take(Self::COUNT) {
-                if form >= 0.0 {
-                    continue;
-                }
-                let mut terms = [simd.splat_f32s(0.0); 3];
-                for (axis, term) in terms.iter_mut().enumerate() {
-                    let (u, l) = (self.upper[axis][plane], self.lower[axis][plane]);
-                    let far_u = if u >= 0.0 { &block.max[axis] } else { &block.min[axis] };
-                    let far_l = if l >= 0.0 { &block.max[axis] } else { &block.min[axis] };
-                    *term = simd.max_f32s(
-                        simd.mul_f32s(simd.splat_f32s(u), S::as_simd_f32s(far_u).0[i]),
-                        simd.mul_f32s(simd.splat_f32s(l), S::as_simd_f32s(far_l).0[i]),
-                    );
-                }
-                let form = simd.add_f32s(sum(simd, terms), simd.splat_f32s(self.outer[plane]));
-                least = simd.min_f32s(least, form);
+    fn edges<'a>(&self, crossed: u16, bounds: &Aabb, edges: &'a mut [Edge; Self::COUNT]) -> &'a [Edge] {
+        let (mut count, mut rest) = (0, crossed);
+        while rest != 0 && count < Self::COUNT {
+            let plane = rest.trailing_zeros() as usize % Self::ROOM;
+            rest &= rest - 1;
+            edges[count].outer = self.outer[plane];
+            for axis in 0..3 {
+                let (u, l) = (self.upper[axis][plane], self.lower[axis][plane]);
+                let above = bounds.min[axis] >= 0.0;
+                edges[count].form[axis] = if (u >= 0.0) == (l >= 0.0) && (above || bounds.max[axis] <= 0.0) {
+                    // u ≥ l, and products round in order: it is known which is the greater one.
+                    Form { u: if above { u } else { l }, l: None, greatest: [u >= 0.0; 2] }
+                } else {
+                    Form { u, l: Some(l), greatest: [u >= 0.0, l >= 0.0] }
+                };
             }
-            let outside = simd.less_than_f32s(least, simd.splat_f32s(0.0));
-            bits |= bits_of(simd, outside, i);
+            count += 1;
         }
-        bits
+        &edges[..count]
     }
+}
+
+/// A plane that a node crosses.
+#[derive(Clone, Copy)]
+struct Edge {
+    form: [Form; 3],
+    outer: f32,
+}
+
+/// What an axis adds to a plane's form: the product with one coefficient, or the greater of two; and
+/// for each whether it is with the greatest coordinate, or the least.
+#[derive(Clone, Copy)]
+struct Form {
+    u: f32,
+    l: Option<f32>,
+    greatest: [bool; 2],
+}
+
+impl Edge {
+    const NONE: Self = Self { form: [Form { u: 0.0, l: None, greatest: [false; 2] }; 3], outer: 0.0 };
+}
+
+/// The lanes of a block that are outside one of the planes.
+#[inline(always)]
+fn outside<S: Simd>(simd: S, block: &Block, edges: &[Edge]) -> u16 {
+    let mut bits = 0;
+    for i in 0..LANES / S::F32_LANES {
+        let mut least = simd.splat_f32s(0.0);
+        for Edge { form, outer } in edges {
+            let mut terms = [simd.splat_f32s(0.0); 3];
+            for axis in 0..3 {
+                let Form { u, l, greatest } = form[axis];
+                let far = if greatest[0] { &block.max[axis] } else { &block.min[axis] };
+                terms[axis] = simd.mul_f32s(simd.splat_f32s(u), S::as_simd_f32s(far).0[i]);
+                if let Some(l) = l {
+                    let far = if greatest[1] { &block.max[axis] } else { &block.min[axis] };
+                    let other = simd.mul_f32s(simd.splat_f32s(l), S::as_simd_f32s(far).0[i]);
+                    terms[axis] = simd.max_f32s(terms[axis], other);
+                }
+            }
+            least = simd.min_f32s(least, simd.add_f32s(sum(simd, terms), simd.splat_f32s(*outer)));
+        }
+        bits |= bits_of(simd, simd.less_than_f32s(least, simd.splat_f32s(0.0)), i);
+    }
+    bits
 }
 
 /// In the order of [`Frustum::classify`]. Closures would not be compiled for the wide registers.
@@ -207,3 +241,25 @@ impl Planes {
 fn sum<S: Simd>(simd: S, [x, y, z]: [S::f32s; 3]) -> S::f32s {
     simd.add_f32s(simd.add_f32s(x, y), z)
 }
+
+/// A mask of one register's lanes as bits of the block's.
+#[inline(always)]
+fn bits_of<S: Simd>(simd: S, mask: S::m32s, register: usize) -> u16 {
+    // Where masks are bits already; the compiler knows which.
+    if let Some(bits) = (&mask as &dyn Any).downcast_ref::<b16>() {
+        return bits.0;
+    }
+    // Lanes as different powers of two add up to their bits, exactly.
+    let powers = S::as_simd_f32s(&POWERS).0[register];
+    simd.reduce_sum_f32s(simd.select_f32s(mask, powers, simd.splat_f32s(0.0))) as u16
+}
+
+const POWERS: [f32; LANES] = {
+    let mut powers = [1.0; LANES];
+    let mut i = 1;
+    while i < LANES {
+        powers[i] = 2.0 * powers[i - 1];
+        i += 1;
+    }
+    powers
+};

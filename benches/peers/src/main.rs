@@ -14,7 +14,7 @@ mod yardstick;
 
 use clock::{median, seconds};
 use trees::Peer;
-use workload::Workload;
+use workload::{Manner, Workload};
 use yardstick::Scan;
 
 fn main() {
@@ -54,7 +54,7 @@ struct Row {
 
 /// Half of the boxes move.
 fn run<P: Peer>(name: &'static str, count: usize, frames: usize) -> Row {
-    let mut load = Workload::new(count, 0.5);
+    let mut load = Workload::new(count, 0.5, Manner::USUAL);
     let views = load.views().map(|(_, view)| view);
     let mut tree = P::new(&load.boxes);
     let (mut writes, mut updates) = (Vec::new(), Vec::new());

@@ -175,8 +175,8 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
     for (at, &CallInBand { call: index, nearest, rect }) in calls.iter().enumerate() {
         // The app's order is not the band's: calls lie far apart in memory.
         if let Some(soon) = calls.get(at + AHEAD) {
-            I::prefetch(&frame.calls[soon.call as usize]);
-            I::prefetch(&frame.footprints[soon.call as usize]);
+            simd::prefetch(&frame.calls[soon.call as usize]);
+            simd::prefetch(&frame.footprints[soon.call as usize]);
         }
         if sink.hides::<I>(&rect, nearest) {
             continue;

@@ -66,10 +66,6 @@ pub(crate) trait Isa {
     fn ge_f(a: Self::F, b: Self::F) -> Mask;
     fn blend_f(mask: Mask, a: Self::F, b: Self::F) -> Self::F;
 
-    /// Says that something will be read soon.
-    #[inline(always)]
-    fn prefetch<T>(_: &T) {}
-
     /// The least value of each of sixteen runs of sixteen.
     fn least(runs: &[[f32; LANES]; LANES]) -> Self::F;
     /// The greatest value of each of sixteen runs of sixteen.

@@ -39,13 +39,13 @@ use rayon::prelude::*;
 pub use depth::DepthImage;
 pub use level::SimdLevel;
 pub use pass::{DrawCall, SoftwarePass};
+pub(crate) use simd::prefetch;
+pub(crate) use visibility::Snapshot;
 pub use visibility::VisibilityImage;
 
 use super::{Answer, QueryBackend, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
-pub(crate) use visibility::Snapshot;
-
 use bands::Bands;
 use depth::Depth;
 use hi_z::HiZ;

@@ -260,11 +260,6 @@ mod x86 {
                 unsafe { each!($count, $blend, a, b, mask) }
             }
 
-            #[inline(always)]
-            fn prefetch<T>(what: &T) {
-                // SAFETY: a hint, which reads nothing.
-                unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(what).cast()) }
-            }
 
             #[inline(always)]
             fn least(runs: &[[f32; LANES]; LANES]) -> Self::F {
@@ -449,12 +444,6 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn prefetch<T>(what: &T) {
-            // SAFETY: a hint, which reads nothing.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(what).cast()) }
-        }
-
-        #[inline(always)]
         fn least(runs: &[[f32; LANES]; LANES]) -> __m512 {
             // SAFETY: as for `single`.
             unsafe { fold_runs!(runs, _mm512_min_ps) }
@@ -521,4 +510,19 @@ dispatch! {
 dispatch! {
     /// See [`count::dual`].
     dual(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) = count []
+}
+
+/// Asks for the line of memory in which a value begins, because it will be read soon. A hint: it has
+/// no effect but on time, and none at all where the machine has no such instruction.
+#[inline(always)]
+pub(crate) fn prefetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: every x86-64 has SSE, and the address is that of a value that lives.
+    unsafe {
+        std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(
+            std::ptr::from_ref(value).cast(),
+        );
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = value;
 }

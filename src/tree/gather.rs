@@ -1,0 +1,274 @@
+//! Rows of sixteen boxes from boxes that lie anywhere in memory: half of what a moving object costs.
+//!
+//! A box is two loads of four words, and rows are made of columns in registers. With AVX-512 that is
+//! about a hundred instructions for sixteen boxes, so that many blocks are on their way from memory
+//! at once. Everywhere else the same is done by fours. Numbers are only moved and compared: results
+//! are the same on every machine.
+
+use glam::{Mat4, Vec3, Vec4};
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::V4;
+#[cfg(target_arch = "x86_64")]
+use pulp::{cast, f32x16};
+
+use super::block::{Block, LANES};
+use super::hull::Hull;
+use crate::geom::Aabb;
+
+/// The newest box of an object in half a line of memory: the bits of its least and its greatest
+/// coordinates, then two words that are the owner's.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Words(pub(super) [u32; 8]);
+
+impl Words {
+    /// No box: the empty one.
+    pub(super) const NOTHING: Self = {
+        let (low, high) = (f32::INFINITY.to_bits(), f32::NEG_INFINITY.to_bits());
+        Self([low, low, low, high, high, high, u32::MAX, u32::MAX])
+    };
+
+    /// The words of a box, and the owner's.
+    #[inline(always)]
+    pub(super) fn new(aabb: &Aabb, owners: [u32; 2]) -> Self {
+        let [a, b, c] = aabb.min.to_array().map(f32::to_bits);
+        let [d, e, f] = aabb.max.to_array().map(f32::to_bits);
+        Self([a, b, c, d, e, f, owners[0], owners[1]])
+    }
+
+    /// The box.
+    #[inline(always)]
+    pub(super) fn aabb(&self) -> Aabb {
+        let [a, b, c, d, e, f, ..] = self.0.map(f32::from_bits);
+        Aabb::new([a, b, c].into(), [d, e, f].into())
+    }
+
+    /// Half of the words: the compiler makes it one load.
+    #[inline(always)]
+    fn half(&self, half: usize) -> [f32; 4] {
+        let from = 4 * half;
+        let [a, b, c, d] = [self.0[from], self.0[from + 1], self.0[from + 2], self.0[from + 3]];
+        [f32::from_bits(a), f32::from_bits(b), f32::from_bits(c), f32::from_bits(d)]
+    }
+}
+
+/// What a node asks of its objects: to lie in its cell, across planes (NaN where there is none).
+#[derive(Clone, Copy)]
+pub(super) struct Site {
+    pub(super) cell: Aabb,
+    pub(super) straddled: Vec3,
+}
+
+/// What renewing a block found: a bit for each lane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Found {
+    pub(super) hull: Hull,
+    /// Its box is another one than before.
+    pub(super) moved: u16,
+    /// It does not lie as the site asks: see [`Nodes::holds`](super::node::Nodes::holds).
+    pub(super) out: u16,
+}
+
+/// Renews blocks with one kind of registers.
+pub(super) trait Gather: Copy {
+    /// Takes the boxes of all lanes anew, each from its slot's words.
+    fn renew(self, block: &mut Block, newest: &[Words], site: &Site) -> Found;
+}
+
+// No closures here: they would not be compiled for the wide registers.
+#[cfg(target_arch = "x86_64")]
+impl Gather for V4 {
+    #[inline(always)]
+    fn renew(self, block: &mut Block, newest: &[Words], site: &Site) -> Found {
+        let mut boxes = [&Words::NOTHING; LANES];
+        for (words, &slot) in boxes.iter_mut().zip(&block.slots) {
+            *words = newest.get(slot as usize).unwrap_or(&Words::NOTHING);
+        }
+        let (near, far) = (halves(self, &boxes, 0), halves(self, &boxes, 1));
+        let ([x, y], [z, far_x], [far_y, far_z]) =
+            (lower(self, &near), upper(self, &near), lower(self, &far));
+        let (min, max) = ([x, y, z], [far_x, far_y, far_z]);
+        let (mut moved, mut out) = (0, 0);
+        for axis in 0..3 {
+            let (low, high) = (min[axis], max[axis]);
+            moved |= self.cmp_not_eq_f32x16(low, cast(block.min[axis])).0;
+            moved |= self.cmp_not_eq_f32x16(high, cast(block.max[axis])).0;
+            out |= self.cmp_lt_f32x16(low, self.splat_f32x16(site.cell.min[axis])).0;
+            out |= self.cmp_gt_f32x16(high, self.splat_f32x16(site.cell.max[axis])).0;
+            let plane = self.splat_f32x16(site.straddled[axis]);
+            out |= self.cmp_ge_f32x16(low, plane).0 | self.cmp_le_f32x16(high, plane).0;
+            (block.min[axis], block.max[axis]) = (cast(low), cast(high));
+        }
+        out &= self.cmp_lt_f32x16(x, self.splat_f32x16(f32::INFINITY)).0;
+        Found { hull: hull(self, &near, &far), moved, out }
+    }
+}
+
+/// Half of each box, four boxes a register, from objects four lanes apart: so rows come out in order.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn halves(simd: V4, boxes: &[&Words; LANES], half: usize) -> [f32x16; 4] {
+    let mut all = [simd.splat_f32x16(0.0); 4];
+    for (i, four) in all.iter_mut().enumerate() {
+        let f = simd.avx512f;
+        let sum = f._mm512_castps128_ps512(cast(boxes[i].half(half)));
+        let sum = f._mm512_insertf32x4::<1>(sum, cast(boxes[i + 4].half(half)));
+        let sum = f._mm512_insertf32x4::<2>(sum, cast(boxes[i + 8].half(half)));
+        *four = cast(f._mm512_insertf32x4::<3>(sum, cast(boxes[i + 12].half(half))));
+    }
+    all
+}
+
+/// The first two rows of four registers whose quarters are columns of four.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn lower(simd: V4, fours: &[f32x16; 4]) -> [f32x16; 2] {
+    let f = simd.avx512f;
+    let ab = f._mm512_castps_pd(f._mm512_unpacklo_ps(cast(fours[0]), cast(fours[1])));
+    let cd = f._mm512_castps_pd(f._mm512_unpacklo_ps(cast(fours[2]), cast(fours[3])));
+    [cast(f._mm512_unpacklo_pd(ab, cd)), cast(f._mm512_unpackhi_pd(ab, cd))]
+}
+
+/// The last two rows.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn upper(simd: V4, fours: &[f32x16; 4]) -> [f32x16; 2] {
+    let f = simd.avx512f;
+    let ab = f._mm512_castps_pd(f._mm512_unpackhi_ps(cast(fours[0]), cast(fours[1])));
+    let cd = f._mm512_castps_pd(f._mm512_unpackhi_ps(cast(fours[2]), cast(fours[3])));
+    [cast(f._mm512_unpacklo_pd(ab, cd)), cast(f._mm512_unpackhi_pd(ab, cd))]
+}
+
+/// The box around all boxes: of columns first, and across a register once at the end.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn hull(simd: V4, near: &[f32x16; 4], far: &[f32x16; 4]) -> Hull {
+    let f = simd.avx512f;
+    let least = f._mm512_min_ps(
+        f._mm512_min_ps(cast(near[0]), cast(near[1])),
+        f._mm512_min_ps(cast(near[2]), cast(near[3])),
+    );
+    let least: [f32; 4] = {
+        let (a, b) = (f._mm512_extractf32x4_ps::<0>(least), f._mm512_extractf32x4_ps::<1>(least));
+        let (c, d) = (f._mm512_extractf32x4_ps::<2>(least), f._mm512_extractf32x4_ps::<3>(least));
+        cast(simd.sse._mm_min_ps(simd.sse._mm_min_ps(a, b), simd.sse._mm_min_ps(c, d)))
+    };
+    let ([.., far_x], [far_y, far_z, ..]) = (greatest(simd, near), greatest(simd, far));
+    Hull::around(&Aabb::new([least[0], least[1], least[2]].into(), [far_x, far_y, far_z].into()))
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn greatest(simd: V4, fours: &[f32x16; 4]) -> [f32; 4] {
+    let f = simd.avx512f;
+    let all = f._mm512_max_ps(
+        f._mm512_max_ps(cast(fours[0]), cast(fours[1])),
+        f._mm512_max_ps(cast(fours[2]), cast(fours[3])),
+    );
+    let (a, b) = (f._mm512_extractf32x4_ps::<0>(all), f._mm512_extractf32x4_ps::<1>(all));
+    let (c, d) = (f._mm512_extractf32x4_ps::<2>(all), f._mm512_extractf32x4_ps::<3>(all));
+    cast(simd.sse._mm_max_ps(simd.sse._mm_max_ps(a, b), simd.sse._mm_max_ps(c, d)))
+}
+
+/// Registers of four, which every machine has.
+#[derive(Clone, Copy)]
+pub(super) struct ByFours;
+
+impl Gather for ByFours {
+    #[inline(always)]
+    fn renew(self, block: &mut Block, newest: &[Words], site: &Site) -> Found {
+        let (mut moved, mut out) = (0, 0);
+        let (mut least, mut most) = ([Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]);
+        for from in (0..LANES).step_by(4) {
+            let boxes = [0, 1, 2, 3].map(|i| {
+                let slot = block.slots[from + i];
+                newest.get(slot as usize).unwrap_or(&Words::NOTHING)
+            });
+            let half = |half| {
+                let [a, b, c, d] = boxes.map(|words| words.half(half).into());
+                Mat4::from_cols(a, b, c, d).transpose()
+            };
+            let (near, far) = (half(0), half(1));
+            let min = [near.x_axis, near.y_axis, near.z_axis];
+            let max = [near.w_axis, far.x_axis, far.y_axis];
+            for axis in 0..3 {
+                let rows = (&mut block.min[axis][from..], &mut block.max[axis][from..]);
+                let differs =
+                    min[axis].cmpne(Vec4::from_slice(rows.0)) | max[axis].cmpne(Vec4::from_slice(rows.1));
+                let plane = Vec4::splat(site.straddled[axis]);
+                let outside = min[axis].cmplt(Vec4::splat(site.cell.min[axis]))
+                    | max[axis].cmpgt(Vec4::splat(site.cell.max[axis]))
+                    | min[axis].cmpge(plane)
+                    | max[axis].cmple(plane);
+                moved |= (differs.bitmask() as u16) << from;
+                let held = min[axis].cmplt(Vec4::INFINITY);
+                out |= ((outside & held).bitmask() as u16) << from;
+                min[axis].write_to_slice(rows.0);
+                max[axis].write_to_slice(rows.1);
+                (least[axis], most[axis]) = (least[axis].min(min[axis]), most[axis].max(max[axis]));
+            }
+        }
+        let corner = |rows: [f32; 3]| Vec3::from_array(rows);
+        let hull = Aabb::new(corner(least.map(Vec4::min_element)), corner(most.map(Vec4::max_element)));
+        Found { hull: Hull::around(&hull), moved, out }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::blocks::NONE;
+    use super::*;
+
+    /// A block of boxes on round numbers, some of which have moved, some left, and some lanes empty.
+    fn example() -> (Block, Vec<Words>, Site) {
+        let mut block = Block::EMPTY;
+        let mut newest = Vec::new();
+        for lane in 0..13 {
+            let at = Vec3::new((lane * 5 % 7) as f32, (lane * 3 % 11) as f32, lane as f32);
+            let old = Aabb::new(at - 1.0, at + 1.0);
+            let shift = if lane % 3 == 0 { 1.0 } else { 0.0 };
+            block.put(lane, 12 - lane as u32, &old);
+            newest.push(Words::new(&Aabb::new(old.min + shift, old.max + 2.0 * shift), [7, u32::MAX]));
+        }
+        newest.reverse();
+        let cell = Aabb::new(Vec3::splat(-1.0), Vec3::new(6.0, 9.0, 12.0));
+        (block, newest, Site { cell, straddled: Vec3::new(f32::NAN, 5.0, f32::NAN) })
+    }
+
+    fn renewed(gather: impl Gather) -> (Block, Found) {
+        let (mut block, newest, site) = example();
+        let found = gather.renew(&mut block, &newest, &site);
+        (block, found)
+    }
+
+    #[test]
+    fn a_renewed_block_is_what_its_objects_are() {
+        let (old, newest, site) = example();
+        let (block, found) = renewed(ByFours);
+        let mut around = Aabb::EMPTY;
+        for lane in 0..LANES {
+            assert_eq!(block.slots[lane], old.slots[lane]);
+            if block.slots[lane] == NONE {
+                assert!(block.aabb(lane).is_empty() && (found.moved | found.out) & 1 << lane == 0);
+                continue;
+            }
+            let (was, is) = (old.aabb(lane), newest[block.slots[lane] as usize].aabb());
+            around = around.union(&is);
+            assert_eq!(block.aabb(lane), is);
+            assert_eq!(found.moved & 1 << lane != 0, was != is, "lane {lane}");
+            let held = site.cell.contains(&is) && is.min.y < 5.0 && 5.0 < is.max.y;
+            assert_eq!(found.out & 1 << lane != 0, !held, "lane {lane}");
+        }
+        assert_eq!(found.hull.aabb(), around);
+        assert!(found.moved != 0 && found.out != 0, "{found:?}");
+    }
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn all_registers_agree() {
+        let Some(wide) = V4::try_new() else { return };
+        let ((block, found), (other, also)) = (renewed(ByFours), wide.vectorize(|| renewed(wide)));
+        assert_eq!(found, also);
+        assert_eq!((block.slots, block.min, block.max), (other.slots, other.min, other.max));
+    }
+}

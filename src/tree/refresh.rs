@@ -1,0 +1,228 @@
+//! Taking the movers' new boxes over into the blocks, and finding who has left its cell.
+//!
+//! Block by block, each by itself: all sixteen boxes are gathered anew (most of a block that has a
+//! mover are movers), turned into rows, and compared with the cell as they pass. Then, in the
+//! order of the blocks, nodes are marked and movers gathered at the front of their runs.
+
+use pulp::NullaryFnOnce;
+
+use super::Tree;
+use super::block::LANES;
+use super::blocks::{Blocks, NONE, News};
+use super::gather::{ByFours, Gather, Site, Words};
+use super::node::Nodes;
+use super::refit::CONTENT;
+use crate::query::software::prefetch;
+
+/// Blocks that are asked of memory ahead of their turn.
+const AHEAD: usize = 4;
+
+/// Arenas of fewer blocks are near enough as it is: about what the second cache holds.
+const FAR: usize = 2048;
+
+/// Updates after which a run that moves looks whether its movers still do.
+const REVIEW: u32 = 64;
+
+impl Tree {
+    /// Brings the blocks in step with the boxes, marks the nodes of those that changed, and lists
+    /// the objects that have left. O(blocks with moved objects), and a look at a byte for every
+    /// block without, unless none has any.
+    pub(super) fn refresh(&mut self) {
+        if !std::mem::take(&mut self.blocks.any_stale) {
+            return;
+        }
+        let mut stale = std::mem::take(&mut self.stale);
+        self.blocks.take_stale(&mut stale);
+        self.renew(&stale);
+        let mut node = NONE;
+        let mut moved = 0;
+        for block in stale.drain(..).map(|block| block as usize) {
+            if node != self.blocks.owner[block] {
+                self.note_moved(node, moved);
+                (node, moved) = (self.blocks.owner[block], 0);
+            }
+            moved += self.blocks.news[block].moved.count_ones();
+            self.list_leavers(block, node);
+            self.gather_movers(block, node);
+        }
+        self.note_moved(node, moved);
+        self.stale = stale;
+    }
+
+    /// Renews blocks, in the widest registers that help.
+    fn renew(&mut self, stale: &[u32]) {
+        let Self { blocks, nodes, .. } = self;
+        #[cfg(target_arch = "x86_64")]
+        if let Some(wide) = pulp::x86::V4::try_new() {
+            return wide.vectorize(Renew { gather: wide, stale, blocks, nodes });
+        }
+        Renew { gather: ByFours, stale, blocks, nodes }.call();
+    }
+
+    fn list_leavers(&mut self, block: usize, node: u32) {
+        let mut out = self.blocks.news[block].out;
+        let divided = !self.nodes.is_leaf(node);
+        let block = &self.blocks.blocks[block];
+        while out != 0 {
+            let lane = out.trailing_zeros() as usize % LANES;
+            out &= out - 1;
+            if !(divided && self.nodes.keeps(node, &block.aabb(lane))) {
+                self.leavers.push(block.slots[lane]);
+            }
+        }
+    }
+
+    /// Brings the objects that have moved twice in a row to the front of their run.
+    fn gather_movers(&mut self, block: usize, node: u32) {
+        let run = &mut self.nodes.run[node as usize];
+        let first = run.index(block * LANES);
+        if run.len <= LANES as u32 || first + LANES as u32 <= run.active {
+            return;
+        }
+        let known = run.active.saturating_sub(first);
+        let mut again = self.blocks.news[block].again >> known;
+        while again != 0 {
+            let lane = again.trailing_zeros();
+            again &= again - 1;
+            self.blocks.promote(run, first + known + lane);
+        }
+    }
+
+    /// Marks a node in which so many objects have moved.
+    fn note_moved(&mut self, node: u32, moved: u32) {
+        if node == NONE {
+            return;
+        }
+        self.touch(node, CONTENT);
+        let n = node as usize;
+        // A third at rest: the others gather anew.
+        if is_review(node, self.tick) && 3 * moved < 2 * self.nodes.run[n].active {
+            self.nodes.run[n].active = 0;
+        }
+        if self.nodes.retry_at[n] > 0 {
+            // What could not be separated may be by now: every move brings the next try nearer.
+            self.nodes.retry_at[n] = self.nodes.retry_at[n].saturating_sub(moved);
+            if self.nodes.is_leaf(node)
+                && self.nodes.run[n].len >= self.build_from().max(self.nodes.retry_at[n])
+            {
+                self.crowded.push(node);
+            }
+        }
+    }
+}
+
+/// In turns, so that no update has to look at all runs.
+fn is_review(node: u32, tick: u32) -> bool {
+    tick.wrapping_add(node).is_multiple_of(REVIEW)
+}
+
+/// The renewing of stale blocks, to be compiled for each kind of registers.
+struct Renew<'a, G> {
+    gather: G,
+    stale: &'a [u32],
+    blocks: &'a mut Blocks,
+    nodes: &'a Nodes,
+}
+
+impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { gather, stale, blocks, nodes } = self;
+        let is_far = blocks.blocks.len() >= FAR;
+        for (i, at) in stale.iter().map(|&block| block as usize).enumerate() {
+            if is_far {
+                ask_ahead(blocks, &stale[i..]);
+            }
+            let node = blocks.owner[at];
+            let n = node as usize;
+            let site = Site { cell: nodes.cell[n], straddled: nodes.straddled[n] };
+            let found = gather.renew(&mut blocks.blocks[at], &blocks.known, &site);
+            blocks.hulls[at] = found.hull;
+            // A leaf at the root holds what there is; in an inner node, all that move are looked at.
+            let out = match (nodes.is_leaf(node), node) {
+                (false, _) => found.moved,
+                (true, 0) => 0,
+                (true, _) => found.out,
+            };
+            let news = &mut blocks.news[at];
+            *news = News { moved: found.moved, again: found.moved & news.moved, out };
+        }
+    }
+}
+
+/// Asks for what later blocks need. Two lines of memory would have to be waited for one after the
+/// other: that of the slots, then those of their boxes.
+#[inline(always)]
+fn ask_ahead(blocks: &Blocks, stale: &[u32]) {
+    if let Some(&later) = stale.get(2 * AHEAD) {
+        let block = &blocks.blocks[later as usize];
+        prefetch(&block.slots);
+        block.min.iter().chain(&block.max).for_each(prefetch);
+    }
+    if let Some(&later) = stale.get(AHEAD) {
+        for &slot in &blocks.blocks[later as usize].slots {
+            prefetch(blocks.known.get(slot as usize).unwrap_or(&Words::NOTHING));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::geom::Aabb;
+    use crate::tree::TreeConfig;
+
+    fn at(slot: u32, shift: f32) -> Aabb {
+        let center = Vec3::new((slot * 7 % 31) as f32, (slot * 11 % 29) as f32, (slot * 13 % 37) as f32);
+        Aabb::from_center(center + shift, Vec3::splat(0.25))
+    }
+
+    /// So many frames in which every tenth object moves, from the given one on.
+    fn play(tree: &mut Tree, first: u32, frames: u32) {
+        for frame in 0..frames {
+            for slot in (first..300).step_by(10) {
+                tree.set_bounds(slot, &at(slot, 0.1 * (1 + frame % 2) as f32));
+            }
+            tree.update();
+            tree.validate().expect("a valid tree");
+        }
+    }
+
+    fn front(tree: &Tree, count: usize) -> Vec<u32> {
+        let mut slots: Vec<u32> = tree.own(tree.root()).iter().flat_map(|block| block.slots).collect();
+        slots.truncate(count);
+        slots.sort_unstable();
+        slots
+    }
+
+    #[test]
+    fn a_new_box_follows_its_object_to_another_block() {
+        let mut tree = Tree::new(TreeConfig::default());
+        (0..40).for_each(|slot| tree.insert(slot, &at(slot, 0.0)));
+        tree.update();
+        tree.set_bounds(39, &at(39, 0.2));
+        tree.remove(0);
+        tree.update();
+        tree.validate().expect("a valid tree");
+        assert_eq!(tree.aabb_of(39), Some(at(39, 0.2)));
+    }
+
+    #[test]
+    fn movers_gather_at_the_front_of_their_run() {
+        let mut tree = Tree::new(TreeConfig::default());
+        (0..300).for_each(|slot| tree.insert(slot, &at(slot, 0.0)));
+        tree.update();
+        play(&mut tree, 0, 3);
+        assert_eq!(tree.nodes.run[0].active, 30);
+        assert_eq!(front(&tree, 30), (0..300).step_by(10).collect::<Vec<_>>());
+        tree.remove(20);
+        assert_eq!(tree.nodes.run[0].active, 29, "another one has taken its place");
+        // Those that have come to rest are found out, and others take their places.
+        play(&mut tree, 5, 3 * REVIEW);
+        assert_eq!(front(&tree, 30), (5..300).step_by(10).collect::<Vec<_>>());
+    }
+}
