@@ -87,7 +87,7 @@ pub use costs::Costs;
 pub use culler::{Culler, Holder, Voter, Why};
 pub use dial::{Dial, DialKind};
 pub use error::Error;
-pub use stats::FrameStats;
+pub use stats::{Counter, FrameStats};
 pub use tradeoff::Tradeoff;
 
 /// The README's programs compile; that which needs no GPU runs.

@@ -2,6 +2,16 @@
 
 use std::time::Duration;
 
+/// What a policy counted of a frame beyond what the driver sees
+/// ([`Policy::counters`](crate::policy::Policy::counters)).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counter {
+    /// What was counted, in snake case: a key of statistics.
+    pub key: &'static str,
+    /// How often.
+    pub count: u32,
+}
+
 /// What one frame of one view did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {

@@ -1,11 +1,13 @@
 //! The figures of a run: one record a frame, and what they add up to.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
 use anyhow::Context;
 use hecs::World;
 use serde::Serialize;
+use tercet::Counter;
 use tercet::draw::Drawable;
 use tercet::query::QueryBackend;
 use tercet::query::software::SoftwareQueries;
@@ -57,6 +59,9 @@ pub struct FrameRecord {
     pub false_culls: Option<u32>,
     /// Pixels that differ from those of the frame drawn whole.
     pub wrong_pixels: Option<u64>,
+    /// What the policy counted itself; one column each.
+    #[serde(skip)]
+    pub counters: Vec<Counter>,
 }
 
 /// What does not change from frame to frame.
@@ -138,6 +143,8 @@ pub struct Summary {
     pub waves: Mean,
     /// See [`FrameRecord::state_changes`].
     pub state_changes: Mean,
+    /// See [`FrameRecord::counters`], by key; empty for a policy that counts nothing itself.
+    pub counters: BTreeMap<&'static str, MeanMax>,
     /// The tree.
     pub tree: TreeFigures,
     /// See [`FrameRecord::exact_visible`].
@@ -272,6 +279,7 @@ impl Summary {
             query_boxes: Mean { mean: mean(&each(|f| f.query_boxes.into())) },
             waves: Mean { mean: mean(&each(|f| f.waves.into())) },
             state_changes: Mean { mean: mean(&each(|f| f.state_changes.into())) },
+            counters: counters(frames),
             tree,
             exact_visible: oracle(|f| f.exact_visible.map(f64::from)).map(|m| Mean { mean: m.mean }),
             box_visible: oracle(|f| f.box_visible.map(f64::from)).map(|m| Mean { mean: m.mean }),
@@ -283,10 +291,31 @@ impl Summary {
 
 /// Writes `frames.csv` and `summary.json` into a folder that exists.
 pub fn write(out: &Path, summary: &Summary, frames: &[FrameRecord]) -> anyhow::Result<()> {
-    write_csv(&out.join("frames.csv"), frames)?;
+    write_frames(&out.join("frames.csv"), frames)?;
     let path = out.join("summary.json");
     let json = serde_json::to_string_pretty(summary)? + "\n";
     fs::write(&path, json).with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Writes a line a frame: the record's fields, then the policy's own counters.
+fn write_frames(path: &Path, frames: &[FrameRecord]) -> anyhow::Result<()> {
+    let mut fields = csv::Writer::from_writer(Vec::new());
+    for frame in frames {
+        fields.serialize(frame)?;
+    }
+    let fields = fields.into_inner()?;
+    let lines = csv::ReaderBuilder::new().has_headers(false).from_reader(&*fields).into_records();
+    let mut csv = csv::Writer::from_path(path).with_context(|| format!("cannot write {}", path.display()))?;
+    // The first line holds the names.
+    let frames = frames.iter().take(1).map(|f| (f, true)).chain(frames.iter().map(|f| (f, false)));
+    for (line, (frame, is_header)) in lines.zip(frames) {
+        let mut line = line?;
+        for counter in &frame.counters {
+            line.push_field(&if is_header { counter.key.to_owned() } else { counter.count.to_string() });
+        }
+        csv.write_record(&line)?;
+    }
+    Ok(csv.flush()?)
 }
 
 /// Writes a table with a line a row, under a line of the fields' names.
@@ -304,6 +333,15 @@ pub fn percentile(values: &[f64], percent: f64) -> f64 {
     sorted.sort_by(f64::total_cmp);
     let rank = (percent / 100.0 * sorted.len() as f64).ceil() as usize;
     sorted[rank.clamp(1, sorted.len()) - 1]
+}
+
+/// Mean and maximum of each counter of the policy's own.
+fn counters(frames: &[FrameRecord]) -> BTreeMap<&'static str, MeanMax> {
+    let mut counts: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
+    for counter in frames.iter().flat_map(|f| &f.counters) {
+        counts.entry(counter.key).or_default().push(counter.count.into());
+    }
+    counts.into_iter().map(|(key, values)| (key, mean_max(&values))).collect()
 }
 
 fn spread(values: &[f64]) -> Spread {
@@ -350,12 +388,31 @@ mod tests {
             r#""stage_ms":{"sync":0.0,"tree":0.5,"policy":0.0,"draw":0.0,"query":0.0,"wait":0.0},"#,
             r#""drawn":{"mean":0.0,"max":0.0},"drawn_triangles":{"mean":0.0},"in_frustum":{"mean":0.0},"#,
             r#""queries":{"mean":0.0,"max":0.0},"query_boxes":{"mean":0.0},"waves":{"mean":0.0},"#,
-            r#""state_changes":{"mean":0.0},"#,
+            r#""state_changes":{"mean":0.0},"counters":{},"#,
             r#""tree":{"nodes":0,"depth":0,"splits":0.0,"merges":0.0,"moves":0.0,"flips":0.0,"#,
             r#""maintenance_share":0.25},"#,
             r#""exact_visible":null,"box_visible":null,"false_culls":null,"wrong_pixels":null}"#,
         );
         assert_eq!(json, expected);
+    }
+
+    #[test]
+    fn what_a_policy_counts_has_its_own_keys_and_columns() {
+        let frame = |count| FrameRecord {
+            counters: vec![Counter { key: "pull_ups", count }, Counter { key: "batches", count: 1 }],
+            ..Default::default()
+        };
+        let frames = [frame(2), frame(4)];
+        let summary = Summary::new(Setting::default(), TreeFigures::default(), &frames);
+        let json = serde_json::to_string(&summary.counters).expect("a summary is plain data");
+        assert_eq!(json, r#"{"batches":{"mean":1.0,"max":1.0},"pull_ups":{"mean":3.0,"max":4.0}}"#);
+        let path = std::env::temp_dir().join(format!("tercet-frames-{}.csv", std::process::id()));
+        write_frames(&path, &frames).expect("a file in the folder for such files");
+        let csv = fs::read_to_string(&path).expect("it was written");
+        fs::remove_file(&path).expect("it is there");
+        let lines: Vec<&str> = csv.lines().collect();
+        assert!(lines[0].ends_with(",wrong_pixels,pull_ups,batches"), "{csv}");
+        assert!(lines[1].ends_with(",2,1") && lines[2].ends_with(",4,1"), "{csv}");
     }
 
     #[test]

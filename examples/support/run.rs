@@ -78,6 +78,7 @@ impl Frame<'_> {
             query_boxes: stats.query_boxes,
             waves: stats.waves,
             state_changes: stats.state_changes,
+            counters: self.eye.policy().counters(),
             ..Default::default()
         }
     }

@@ -55,6 +55,11 @@ fn rows(s: &Summary) -> Vec<(&'static str, String)> {
             ),
         ),
         ("state changes", format!("{:.1} between drawing and asking", s.state_changes.mean)),
+    ]);
+    rows.extend(
+        counters(s).into_iter().enumerate().map(|(i, line)| (if i == 0 { "the policy" } else { "" }, line)),
+    );
+    rows.extend([
         ("tree", format!("{} nodes, {} deep", s.tree.nodes, s.tree.depth)),
         (
             "tree's events",
@@ -66,6 +71,12 @@ fn rows(s: &Summary) -> Vec<(&'static str, String)> {
         ("tree's share", format!("{:.1} % of the frame's time", 100.0 * s.tree.maintenance_share)),
     ]);
     rows
+}
+
+/// What the policy counted itself, a few to a line.
+fn counters(s: &Summary) -> Vec<String> {
+    let each = s.counters.iter().map(|(key, count)| format!("{:.1} {}", count.mean, key.replace('_', " ")));
+    each.collect::<Vec<_>>().chunks(3).map(|few| few.join(", ")).collect()
 }
 
 /// A whole number with thin groups of three: 18 200 413.

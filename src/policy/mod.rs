@@ -33,7 +33,7 @@ use crate::geom::{Frustum, Proxy, View};
 use crate::query::{Answer, Ticket, Want};
 use crate::scene::ObjectId;
 use crate::tree::{NodeId, Tree, Votes};
-use crate::{Costs, Error, Tradeoff};
+use crate::{Costs, Counter, Error, Tradeoff};
 
 /// What a policy may look at.
 #[derive(Clone, Copy, Debug)]
@@ -126,6 +126,12 @@ pub trait Policy: Send + Sync {
         Fate::Unknown
     }
 
+    /// What it counted of the last frame, for statistics: the same keys every frame, zeros
+    /// included. Nothing is put together until somebody asks.
+    fn counters(&self) -> Vec<Counter> {
+        Vec::new()
+    }
+
     /// What it must be given before each frame, if it is a reference ([`Recorded`]).
     fn wants_recorded(&self) -> Option<Recording> {
         None
@@ -183,6 +189,10 @@ impl Policy for Box<dyn Policy> {
 
     fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
         (**self).fate(cx, node)
+    }
+
+    fn counters(&self) -> Vec<Counter> {
+        (**self).counters()
     }
 
     fn wants_recorded(&self) -> Option<Recording> {
