@@ -60,6 +60,7 @@
 //! | skipping questions by their worth | `policy/skip.rs` | ours |
 //! | dual query, overlap-ordered waves | `policy/dual_query.rs`, `policy/order.rs` | Kovalčík and Tobola 2005 |
 //! | statistically optimised queries | `policy/statistical.rs` | Kovalčík and Sochor 2005 |
+//! | hierarchy updating, visibility propagation | `policy/hierarchy/` | Bittner and Havran 2001 |
 //! | stop-and-wait, OPT, REF | `policy/stop_and_wait.rs`, `policy/recorded.rs` | Bittner et al. 2004, Mattausch et al. 2008, Lee et al. 2021 |
 //! | conservative box proxy | `geom/proxy.rs` | its proof is in the module |
 //! | exact software rasteriser and counts | `query/software/` | |

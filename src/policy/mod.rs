@@ -9,6 +9,7 @@ mod dual_query;
 mod fate;
 mod front;
 mod frustum;
+mod hierarchy;
 mod history;
 mod none;
 mod order;
@@ -20,6 +21,7 @@ mod stop_and_wait;
 pub use dual_query::{DualQuery, Order};
 pub use fate::{Fate, Samples};
 pub use frustum::FrustumOnly;
+pub use hierarchy::{Coherence, Hierarchy};
 pub use history::{History, NodeState};
 pub use none::DrawAll;
 pub use order::ScreenTiles;
@@ -213,7 +215,19 @@ impl Policy for Box<dyn Policy> {
 }
 
 /// The names that [`by_name`] knows.
-pub const NAMES: &[&str] = &["none", "frustum", "statistical", "dual-query", "stop-and-wait", "opt", "exact"];
+pub const NAMES: &[&str] = &[
+    "none",
+    "frustum",
+    "statistical",
+    "dual-query",
+    "stop-and-wait",
+    "hierarchy-a",
+    "hierarchy-b",
+    "hierarchy-c",
+    "hierarchy-d",
+    "opt",
+    "exact",
+];
 
 /// A policy by the name that `--policy` takes, with its default dials.
 ///
@@ -226,6 +240,10 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "dual-query" => Box::new(DualQuery::default()),
         "statistical" => Box::new(Statistical::default()),
         "stop-and-wait" => Box::new(StopAndWait::default()),
+        "hierarchy-a" => Box::new(Hierarchy::new(Coherence::Classical)),
+        "hierarchy-b" => Box::new(Hierarchy::new(Coherence::Updating)),
+        "hierarchy-c" => Box::new(Hierarchy::new(Coherence::Propagating)),
+        "hierarchy-d" => Box::new(Hierarchy::new(Coherence::Conservative)),
         "opt" => Box::new(Recorded::new(Recording::StopAndWait)),
         "exact" => Box::new(Recorded::new(Recording::ExactSet)),
         _ => return Err(Error::UnknownPolicy { name: name.to_owned(), known: NAMES.join(", ") }),

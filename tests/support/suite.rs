@@ -56,6 +56,10 @@ pub fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
         ("dual-query", 1) if variant.is_multiple_of(2) => &[("order", "visible-first")],
         ("dual-query", 2) => &[("max_waves", "3"), ("n_skip", "8")],
         ("statistical", 1) => &[("in_flight", "1"), ("n_skip", "0")],
+        ("hierarchy-b", 2) => &[("whole", "true")],
+        ("hierarchy-c", 1 | 2) => &[("p_vp", "1")],
+        ("hierarchy-d", 1) => &[("p_vp", "1"), ("p_skip", "0.9")],
+        ("hierarchy-d", 2) => &[("p_vp", "1"), ("p_skip", "0"), ("whole", "true")],
         _ => &[],
     };
     for (key, value) in dials {
