@@ -102,7 +102,7 @@ fn scatter(model: &mut Model, fallback: &tercet::scene::mesh::Mesh) {
 /// Whole pictures: what is not drawn leaves no trace, down to the bits of the depth buffer.
 #[test]
 fn frames_equal_those_without_culling() {
-    for name in ["dual-query", "statistical", "stop-and-wait"] {
+    for name in ["dual-query", "statistical", "stop-and-wait", "hierarchy-b", "hierarchy-d"] {
         for seed in 0..4 {
             let mut stage = Stage::new(worlds::random(seed, 120), seed, Viewport::new(301, 203), false);
             stage.detail = Detail::FULL;
@@ -117,12 +117,13 @@ fn frames_equal_those_without_culling() {
 
 #[test]
 fn a_lying_backend_is_found_out() {
-    let mut all = Outcome::default();
-    for seed in 0..4 {
-        let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
-        let mut lying = Lying(SoftwareQueries::new());
-        let policy = dialled("dual-query", 0);
-        all.add(run(&mut stage, TreeConfig::default(), policy, &mut lying, FRAMES));
+    for name in ["dual-query", "hierarchy-a", "hierarchy-b", "hierarchy-c", "hierarchy-d"] {
+        let mut all = Outcome::default();
+        for seed in 0..4 {
+            let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+            let mut lying = Lying(SoftwareQueries::new());
+            all.add(run(&mut stage, TreeConfig::default(), dialled(name, 0), &mut lying, FRAMES));
+        }
+        assert!(all.lost > 0 && all.wrong_pixels > 0, "{name}: {all:?}");
     }
-    assert!(all.lost > 0 && all.wrong_pixels > 0, "{all:?}");
 }

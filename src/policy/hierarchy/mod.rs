@@ -123,12 +123,12 @@ struct Counts {
 }
 
 impl Hierarchy {
-    /// With the paper's constants.
+    /// With the paper's constants; of its two best `p_skip`, 0.5 and 0.6, the greater.
     pub fn new(coherence: Coherence) -> Self {
         Self {
             coherence,
             p_vp: 0.5,
-            p_skip: 0.5,
+            p_skip: 0.6,
             whole: false,
             seed: 1,
             history: History::default(),

@@ -10,7 +10,7 @@
 //! the viewer be contained in closed cells that are *hidden*: their
 //! questions, in this frame, were about the whole cell and found no sample visible. Then the node's
 //! cell is hidden, if a question about it would allow for no more error
-//! ([`uncertainty`]) than those questions did.
+//! ([`uncertainty`]) than those questions had room for.
 //!
 //! *Proof.* Let geometry of the node own a sample S. By the proof of [`Proxy`](crate::geom::Proxy), S
 //! lies within reach r of the exact projection of a point g of the cell, and is stored no nearer
@@ -20,11 +20,12 @@
 //! its proxy covers S, with a nearness of at least N(q) + ε ≥ N(g) + ε. The answer says that
 //! something nearer than that was stored at S, in this frame; depth that has been drawn only gets
 //! nearer. So S belongs to something else. A cell found hidden in this way can bear witness like one
-//! that was asked about, with the least error allowed for on the way.
+//! that was asked about, with the least error allowed for on the way; and so can one without objects,
+//! which nobody asks about, through the faces that the line entered *it* by.
 //!
 //! *Where it would not hold, nothing is concluded.* A question about a tight box, or a settled
 //! node's, says nothing of the rest of the cell; a straddle child's cell is not its own; nothing is
-//! known beyond the root; a cell without objects is never asked about; an answer that a
+//! known beyond the root; an answer that a
 //! [`Tradeoff`](crate::Tradeoff) made hidden is not; one of an earlier frame is about occluders that
 //! may have left. What moves needs no rule of its own: the cell is a part of space, whoever is in it.
 
@@ -54,24 +55,36 @@ struct Face {
     sheet: Aabb,
 }
 
+/// Cells without objects that a line of sight may cross from the one that speaks for it.
+const MAX_EMPTY: u32 = 3;
+
+/// A step of the coarsest grid that vertices are snapped to. A proxy's reach has room for two of
+/// them, and a question that counts snaps nothing but the geometry.
+const SPARE_PIXELS: f64 = 1.0 / 16.0;
+
 /// Asks the neighbours of a node about it: all of them must agree. None if they do not.
 /// O(depth), and O(nodes at the faces) where the neighbours are finer than the node.
 pub(super) fn ask_neighbours(cx: &Context<'_>, records: &Records, node: NodeId) -> Option<Verdict> {
-    let cell = cx.tree.cell(node);
-    let mut said: Option<Verdict> = None;
-    for face in faces(&cell, cx.view.eye()) {
-        let beyond = rope(cx.tree, node, &face)?;
-        let here = known(cx, records, beyond, &face)?;
-        said = Some(agree(said, here)?);
-    }
-    match said? {
+    let verdict = beyond_faces(cx, records, node, MAX_EMPTY)?;
+    match verdict {
         Verdict::Hidden(within) => {
-            let own = uncertainty(&cell, cx.view)?;
-            (0..3).all(|i| own[i] <= within[i]).then_some(Verdict::Hidden(within))
+            let own = uncertainty(&cx.tree.cell(node), cx.view)?;
+            let spare = [SPARE_PIXELS, SPARE_PIXELS, 0.0];
+            (0..3).all(|i| own[i] <= within[i] + spare[i]).then_some(verdict)
         }
         // Whatever a node holds hides a part of what is behind it: an inner node is opened.
-        Verdict::Visible => cx.tree.is_leaf(node).then_some(Verdict::Visible),
+        Verdict::Visible => cx.tree.is_leaf(node).then_some(verdict),
     }
+}
+
+/// What is known of the space beyond all faces of a cell that may be turned to the viewer.
+fn beyond_faces(cx: &Context<'_>, records: &Records, node: NodeId, empty: u32) -> Option<Verdict> {
+    let mut said = None;
+    for face in faces(&cx.tree.cell(node), cx.view.eye()) {
+        let beyond = rope(cx.tree, node, &face)?;
+        said = Some(agree(said, known(cx, records, beyond, &face, empty)?)?);
+    }
+    said
 }
 
 /// Both of two verdicts, if they are the same.
@@ -142,24 +155,28 @@ fn divides(tree: &Tree, low: NodeId, high: NodeId, face: &Face) -> bool {
 }
 
 /// What is known in this frame of the space just beyond a face: by the node there, by the parts of
-/// it that touch the face, or by the ancestor at which the frame's traversal ended.
-fn known(cx: &Context<'_>, records: &Records, beyond: NodeId, face: &Face) -> Option<Verdict> {
+/// it that touch the face, by the ancestor at which the frame's traversal ended, or, beyond a cell
+/// without objects, by that one's neighbours.
+fn known(cx: &Context<'_>, records: &Records, beyond: NodeId, face: &Face, empty: u32) -> Option<Verdict> {
     let stopped_above = || {
         let above = std::iter::successors(cx.tree.parent(beyond), |&n| cx.tree.parent(n));
         above.filter_map(|n| records.of(n, cx.frame)).next().filter(|r| !r.opened)
     };
-    let record = records.of(beyond, cx.frame).or_else(stopped_above)?;
+    let Some(record) = records.of(beyond, cx.frame).or_else(stopped_above) else {
+        let crossed = cx.tree.count(beyond) == 0 && empty > 0;
+        return if crossed { beyond_faces(cx, records, beyond, empty - 1) } else { None };
+    };
     match record.class {
         Class::Invisible => record.hidden_within.map(Verdict::Hidden),
         Class::Visible => (record.asked && !record.propagated).then_some(Verdict::Visible),
         Class::Partial if !record.opened => None,
         Class::Partial => {
             let [low, high, _] = cx.tree.children(beyond)?;
-            let touching = [low, high].into_iter().filter(|&half| cx.tree.cell(half).intersects(&face.sheet));
-            // A cell that only touches the face's border need not agree, but may be asked.
+            // A half that only touches the face's border need not agree, but is asked, too.
+            let touching = [low, high].into_iter().filter(|&c| cx.tree.cell(c).intersects(&face.sheet));
             let mut said = None;
             for half in touching {
-                said = Some(agree(said, known(cx, records, half, face)?)?);
+                said = Some(agree(said, known(cx, records, half, face, empty)?)?);
             }
             said
         }
