@@ -3,17 +3,23 @@
 //! that hidden things were culled, so that a policy that draws everything cannot pass.
 
 mod support;
+#[path = "support/tally.rs"]
+mod tally;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 use support::lying::Lying;
 use support::stage::Stage;
 use support::suite::{FRAMES, SCREEN, assert_culls_most, culls_hidden, dialled, is_default, outcome};
 use support::{Outcome, run};
+use tally::Tally;
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
 use tercet::policy;
 use tercet::query::software::SoftwareQueries;
-use tercet::tree::TreeConfig;
+use tercet::tree::{SplitPlane, Straddlers, TightBoxes, TreeConfig};
 use tercet::worlds::{self, Model, Pathology};
 
 #[test]
@@ -113,6 +119,30 @@ fn frames_equal_those_without_culling() {
             assert!(outcome.culled > 0);
         }
     }
+}
+
+/// Where propagation applies: questions about cells, on the published trees. It must happen, and lose
+/// nothing while everything moves.
+#[test]
+fn propagation_loses_nothing() {
+    let propagated = Arc::new(AtomicU32::new(0));
+    (0..24u64).into_par_iter().for_each(|seed| {
+        let straddlers = if seed % 2 == 0 { Straddlers::StayInParent } else { Straddlers::Leaf };
+        let plane = if seed % 3 == 0 { SplitPlane::SurfaceArea } else { SplitPlane::Middle };
+        let tight_boxes = if seed % 4 == 3 { TightBoxes::Settled } else { TightBoxes::Never };
+        let tree = TreeConfig { straddlers, tight_boxes, plane, ..TreeConfig::stable() };
+        let mut policy = policy::Hierarchy::new(policy::Coherence::Propagating);
+        policy.p_vp = 1.0;
+        let policy = Tally { inner: policy, key: "propagated_nodes", sum: propagated.clone() };
+        // Crowded: what is hidden lies in cells that are hidden as a whole.
+        let model = if seed % 6 < 4 { worlds::city(seed, 0.005) } else { worlds::random(seed, 1500) };
+        let mut stage = Stage::new(model, seed, SCREEN, true);
+        let outcome = run(&mut stage, tree, policy, &mut SoftwareQueries::new(), FRAMES);
+        assert_eq!(outcome.lost, 0, "world {seed}: {outcome:?}");
+    });
+    let propagated = propagated.load(Ordering::Relaxed);
+    println!("{propagated} nodes were classified by their neighbours");
+    assert!(propagated > 100, "{propagated} nodes were classified by their neighbours");
 }
 
 #[test]
