@@ -143,9 +143,16 @@ fn a_tight_box_says_nothing_of_its_cell() {
 #[test]
 fn a_straddle_child_is_no_neighbour() {
     let ternary = TreeConfig { straddlers: Straddlers::Leaf, ..binary() };
-    let mut row = Row::of(policy(Coherence::Propagating), ternary, &STRADDLING.map(Row::at));
+    let mut row = Row::of(policy(Coherence::Propagating), ternary.clone(), &STRADDLING.map(Row::at));
     assert_eq!(row.frame("L=h S=h"), "root L S", "H is behind L, whatever stands between");
     assert_eq!(row.frame("root=p L=p S=h H=h"), "root L all:L S H", "S, hidden, says nothing of H");
+    // HS holds the box across the middle of H; its cell, which is H's, lies behind L as HL's does.
+    let boxes = [0.0, 0.5, 18.0, 18.5, 23.375, 30.0, 30.5].map(Row::at);
+    let mut row = Row::of(without_propagation(Coherence::Propagating), ternary, &boxes);
+    assert_eq!(row.frame("HL=h HS=h"), "root L all:L H HL HS HH all:HH");
+    row.policy.p_vp = 1.0;
+    assert_eq!(row.frame("L=h HS=h"), "L HS HH all:HH");
+    assert_eq!(row.counter("propagated_nodes"), 1);
 }
 
 #[test]
