@@ -35,6 +35,7 @@
 //!   ([`TightBoxes::Never`](crate::tree::TightBoxes), or nodes that have not settled); with boxes that
 //!   are always tight, C is B. *Visible* is for leaves alone, which are drawn as a whole; what a
 //!   neighbour's objects hide of them is not noticed until they are asked about.
+//!   Few cells of our worlds are hidden as a whole, so C asks hardly fewer questions than B.
 //! - The tree is left as it is built, as in the paper: these policies do not vote.
 //!
 //! Conservative whatever the history: nothing is culled but by an answer of this very frame, about
