@@ -5,8 +5,13 @@
 #[path = "support/faulty.rs"]
 mod faulty;
 mod support;
+#[path = "support/tally.rs"]
+mod tally;
 #[path = "support/trusting.rs"]
 mod trusting;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use faulty::Faulty;
 use rayon::prelude::*;
@@ -14,11 +19,12 @@ use support::lying::Lying;
 use support::stage::Stage;
 use support::suite::{FRAMES, SCREEN, assert_culls_most, culls_hidden, dialled, is_default, outcome, trees};
 use support::{Outcome, run};
+use tally::Tally;
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
 use tercet::policy;
 use tercet::query::software::SoftwareQueries;
-use tercet::tree::TreeConfig;
+use tercet::tree::{SplitPlane, Straddlers, TightBoxes, TreeConfig};
 use tercet::worlds::{self, Model, Pathology};
 use trusting::Trusting;
 
@@ -108,7 +114,7 @@ fn scatter(model: &mut Model, fallback: &tercet::scene::mesh::Mesh) {
 /// Whole pictures: what is not drawn leaves no trace, down to the bits of the depth buffer.
 #[test]
 fn frames_equal_those_without_culling() {
-    for name in ["dual-query", "statistical", "chc", "chc++", "stop-and-wait"] {
+    for name in ["dual-query", "statistical", "chc", "chc++", "stop-and-wait", "hierarchy-b", "hierarchy-d"] {
         for seed in 0..4 {
             let mut stage = Stage::new(worlds::random(seed, 120), seed, Viewport::new(301, 203), false);
             stage.detail = Detail::FULL;
@@ -156,14 +162,39 @@ fn trust_in_old_answers_is_found_out() {
     }
 }
 
+/// Where propagation applies: questions about cells, on the published trees. It must happen, and lose
+/// nothing while everything moves.
+#[test]
+fn propagation_loses_nothing() {
+    let propagated = Arc::new(AtomicU32::new(0));
+    (0..24u64).into_par_iter().for_each(|seed| {
+        let straddlers = if seed % 2 == 0 { Straddlers::StayInParent } else { Straddlers::Leaf };
+        let plane = if seed % 3 == 0 { SplitPlane::SurfaceArea } else { SplitPlane::Middle };
+        let tight_boxes = if seed % 4 == 3 { TightBoxes::Settled } else { TightBoxes::Never };
+        let tree = TreeConfig { straddlers, tight_boxes, plane, ..TreeConfig::stable() };
+        let mut policy = policy::Hierarchy::new(policy::Coherence::Propagating);
+        policy.p_vp = 1.0;
+        let policy = Tally { inner: policy, key: "propagated_nodes", sum: propagated.clone() };
+        // Crowded: what is hidden lies in cells that are hidden as a whole.
+        let model = if seed % 6 < 4 { worlds::city(seed, 0.005) } else { worlds::random(seed, 1500) };
+        let mut stage = Stage::new(model, seed, SCREEN, true);
+        let outcome = run(&mut stage, tree, policy, &mut SoftwareQueries::new(), FRAMES);
+        assert_eq!(outcome.lost, 0, "world {seed}: {outcome:?}");
+    });
+    let propagated = propagated.load(Ordering::Relaxed);
+    println!("{propagated} nodes were classified by their neighbours");
+    assert!(propagated > 100, "{propagated} nodes were classified by their neighbours");
+}
+
 #[test]
 fn a_lying_backend_is_found_out() {
-    let mut all = Outcome::default();
-    for seed in 0..4 {
-        let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
-        let mut lying = Lying(SoftwareQueries::new());
-        let policy = dialled("dual-query", 0);
-        all.add(run(&mut stage, TreeConfig::default(), policy, &mut lying, FRAMES));
+    for name in ["dual-query", "hierarchy-a", "hierarchy-b", "hierarchy-c", "hierarchy-d"] {
+        let mut all = Outcome::default();
+        for seed in 0..4 {
+            let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+            let mut lying = Lying(SoftwareQueries::new());
+            all.add(run(&mut stage, TreeConfig::default(), dialled(name, 0), &mut lying, FRAMES));
+        }
+        assert!(all.lost > 0 && all.wrong_pixels > 0, "{name}: {all:?}");
     }
-    assert!(all.lost > 0 && all.wrong_pixels > 0, "{all:?}");
 }

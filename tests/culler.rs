@@ -236,7 +236,9 @@ fn what_an_answer_was_lost_for_is_drawn() {
     let tree = TreeConfig { unasked_leaf: 2, ..TreeConfig::default() };
     let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
     scene.sync(&world);
-    for name in ["dual-query", "statistical", "chc", "chc++", "stop-and-wait"] {
+    let hierarchies = ["hierarchy-a", "hierarchy-b", "hierarchy-c", "hierarchy-d"];
+    for name in ["dual-query", "statistical", "chc", "chc++", "stop-and-wait"].into_iter().chain(hierarchies)
+    {
         for (fault, drawn) in [(Fault::Unknown, 51), (Fault::Silent, 51), (Fault::Twice, 1)] {
             let mut queries = Broken::new(true, fault);
             let mut eye = Culler::new(policy::by_name(name).unwrap());

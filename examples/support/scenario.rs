@@ -2,7 +2,7 @@
 
 use hecs::World;
 use tercet::geom::{View, Viewport};
-use tercet::worlds::{self, CameraPath, Pose, Swarm, power_plant, teapots};
+use tercet::worlds::{self, CameraPath, Pose, Swarm, city, power_plant, teapots};
 
 use super::flags::Flags;
 
@@ -77,6 +77,15 @@ impl Scenario {
             flight: Flight::Path(teapots::path(count)),
             near: NEAR,
         }
+    }
+
+    /// The [`worlds::city()`], walked through, or run through with quick turns.
+    pub fn city(flags: &Flags, fast: bool) -> Self {
+        let mut world = World::new();
+        worlds::city(flags.seed, flags.scale).spawn(&mut world);
+        let path = if fast { city::fast_path(flags.scale) } else { city::path(flags.scale) };
+        let name = if fast { "city, at a run" } else { "city" };
+        Self { name: name.to_owned(), world, swarm: None, flight: Flight::Path(path), near: NEAR }
     }
 
     /// Moves what moves on by a frame.

@@ -15,6 +15,7 @@ mod view;
 pub use aabb::Aabb;
 pub use frustum::{Frustum, PlaneMask};
 pub use outline::ScreenOutline;
+pub(crate) use project::uncertainty;
 pub use project::{Projected, ScreenRect, project};
 pub use proxy::{PixelRect, Proxy, Question};
 pub(crate) use support::Support;

@@ -84,6 +84,14 @@ pub fn project(aabb: &Aabb, view: &View) -> Projected {
     })
 }
 
+/// How far a sample of geometry in a box may lie from the box on the screen: across and down, in
+/// pixels, and in nearness. A question about the box allows for exactly this much. None for a box
+/// that is not asked about. O(1).
+pub(crate) fn uncertainty(aabb: &Aabb, view: &View) -> Option<[f64; 3]> {
+    let screen = place(aabb, view).ok()?;
+    Some([screen.reach.x, screen.reach.y, screen.depth_error])
+}
+
 /// Why a box has no [`Screen`].
 pub(super) enum Unprojected {
     /// It lies outside the view.

@@ -12,6 +12,7 @@ mod dual_query;
 mod fate;
 mod front;
 mod frustum;
+mod hierarchy;
 mod history;
 mod none;
 mod order;
@@ -25,6 +26,7 @@ pub use chc_plus_plus::{ChcPlusPlus, KeepRule};
 pub use dual_query::{DualQuery, Order};
 pub use fate::{Fate, Samples};
 pub use frustum::FrustumOnly;
+pub use hierarchy::{Coherence, Hierarchy};
 pub use history::{History, NodeState};
 pub use none::DrawAll;
 pub use order::ScreenTiles;
@@ -218,8 +220,21 @@ impl Policy for Box<dyn Policy> {
 }
 
 /// The names that [`by_name`] knows.
-pub const NAMES: &[&str] =
-    &["none", "frustum", "statistical", "dual-query", "chc", "chc++", "stop-and-wait", "opt", "exact"];
+pub const NAMES: &[&str] = &[
+    "none",
+    "frustum",
+    "statistical",
+    "dual-query",
+    "chc",
+    "chc++",
+    "stop-and-wait",
+    "hierarchy-a",
+    "hierarchy-b",
+    "hierarchy-c",
+    "hierarchy-d",
+    "opt",
+    "exact",
+];
 
 /// A policy by the name that `--policy` takes, with its default dials.
 ///
@@ -234,6 +249,10 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "chc++" => Box::new(ChcPlusPlus::default()),
         "statistical" => Box::new(Statistical::default()),
         "stop-and-wait" => Box::new(StopAndWait::default()),
+        "hierarchy-a" => Box::new(Hierarchy::new(Coherence::Classical)),
+        "hierarchy-b" => Box::new(Hierarchy::new(Coherence::Updating)),
+        "hierarchy-c" => Box::new(Hierarchy::new(Coherence::Propagating)),
+        "hierarchy-d" => Box::new(Hierarchy::new(Coherence::Conservative)),
         "opt" => Box::new(Recorded::new(Recording::StopAndWait)),
         "exact" => Box::new(Recorded::new(Recording::ExactSet)),
         _ => return Err(Error::UnknownPolicy { name: name.to_owned(), known: NAMES.join(", ") }),

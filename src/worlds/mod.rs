@@ -4,6 +4,7 @@
 //! our own mapping to ranges, and every curve from [`libm`] and the four operations, which
 //! round alike everywhere; glam's matrix products, which may be fused, stay out of it.
 
+pub mod city;
 mod dice;
 mod path;
 mod pathological;
@@ -21,6 +22,7 @@ use crate::geom::Aabb;
 use crate::scene::mesh::Mesh;
 use crate::scene::{Bounds, NotOccluder};
 
+pub use city::city;
 pub use path::{CameraPath, Pose};
 pub use pathological::{Pathology, pathological};
 pub use power_plant::power_plant;

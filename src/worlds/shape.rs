@@ -96,6 +96,16 @@ impl Shape {
         }
     }
 
+    /// A body between two triangles, each counter-clockwise as seen from its first end's outside:
+    /// from `first`, at the lesser coordinate, straight to `last`.
+    pub(super) fn prism(&mut self, first: [Vec3; 3], last: [Vec3; 3]) {
+        let at = self.positions.len() as u32;
+        self.positions.extend(first.into_iter().chain(last));
+        const TRIANGLES: [[u32; 3]; 8] =
+            [[0, 1, 2], [3, 5, 4], [0, 3, 4], [0, 4, 1], [1, 4, 5], [1, 5, 2], [2, 5, 3], [2, 3, 0]];
+        self.indices.extend(TRIANGLES.iter().flatten().map(|i| at + i));
+    }
+
     /// A body turned on a lathe: `profile` lists `[radius, height]` from the bottom to the top,
     /// or counter-clockwise around a hollow body's section, first point again at the end.
     pub(super) fn lathe(&mut self, stand: Stand, profile: &[[f32; 2]], segments: usize) {

@@ -63,6 +63,10 @@ pub fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
         ("chc++", 2) => {
             &[("d_max", "32"), ("s_max", "1000"), ("virtual_leaf", "16"), ("n_av", "3"), ("b", "7")]
         }
+        ("hierarchy-b", 2) => &[("whole", "true")],
+        ("hierarchy-c", 1 | 2) => &[("p_vp", "1")],
+        ("hierarchy-d", 1) => &[("p_vp", "1"), ("p_skip", "0.9")],
+        ("hierarchy-d", 2) => &[("p_vp", "1"), ("p_skip", "0"), ("whole", "true")],
         _ => &[],
     };
     for (key, value) in dials {
