@@ -7,9 +7,10 @@
 use pulp::NullaryFnOnce;
 
 use super::Tree;
-use super::block::LANES;
+use super::block::{Block, LANES};
 use super::blocks::{Blocks, NONE, News};
 use super::gather::{ByFours, Gather, Site, Words};
+use super::hull::Hull;
 use super::node::Nodes;
 use super::refit::CONTENT;
 use crate::query::software::prefetch;
@@ -19,6 +20,9 @@ const AHEAD: usize = 4;
 
 /// Arenas of fewer blocks are near enough as it is: about what the second cache holds.
 const FAR: usize = 2048;
+
+/// Stale blocks from which they are shared among threads: below, waking another takes longer.
+const SHARED_FROM: usize = 1024;
 
 /// Updates after which a run that moves looks whether its movers still do.
 const REVIEW: u32 = 64;
@@ -49,14 +53,11 @@ impl Tree {
         self.stale = stale;
     }
 
-    /// Renews blocks, in the widest registers that help.
+    /// Renews blocks, given in their order.
     fn renew(&mut self, stale: &[u32]) {
-        let Self { blocks, nodes, .. } = self;
-        #[cfg(target_arch = "x86_64")]
-        if let Some(wide) = pulp::x86::V4::try_new() {
-            return wide.vectorize(Renew { gather: wide, stale, blocks, nodes });
-        }
-        Renew { gather: ByFours, stale, blocks, nodes }.call();
+        let Blocks { blocks, hulls, news, owner, known, .. } = &mut self.blocks;
+        let around = Around { nodes: &self.nodes, owner, known, is_far: blocks.len() >= FAR };
+        Stretch { first: 0, stale, blocks, hulls, news }.renew(&around);
     }
 
     fn list_leavers(&mut self, block: usize, node: u32) {
@@ -116,12 +117,62 @@ fn is_review(node: u32, tick: u32) -> bool {
     tick.wrapping_add(node).is_multiple_of(REVIEW)
 }
 
+/// What renewing only reads.
+#[derive(Clone, Copy)]
+struct Around<'a> {
+    nodes: &'a Nodes,
+    /// Of each block.
+    owner: &'a [u32],
+    known: &'a [Words],
+    /// Whether memory has to be asked ahead.
+    is_far: bool,
+}
+
+/// A stretch of the arena, and the stale blocks in it, in their order.
+struct Stretch<'a> {
+    /// The block that the slices begin with.
+    first: usize,
+    stale: &'a [u32],
+    blocks: &'a mut [Block],
+    hulls: &'a mut [Hull],
+    news: &'a mut [News],
+}
+
+impl Stretch<'_> {
+    /// Renews its stale blocks: of many, the halves on two threads. Each block is by itself, so
+    /// the result is the same.
+    fn renew(mut self, around: &Around<'_>) {
+        if self.stale.len() >= SHARED_FROM && rayon::current_num_threads() > 1 {
+            let (low, high) = self.halves();
+            rayon::join(|| low.renew(around), || high.renew(around));
+            return;
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(wide) = pulp::x86::V4::try_new() {
+            return wide.vectorize(Renew { gather: wide, stretch: self, around });
+        }
+        Renew { gather: ByFours, stretch: self, around }.call();
+    }
+
+    /// Cut where half of the stale blocks are.
+    fn halves(&mut self) -> (Stretch<'_>, Stretch<'_>) {
+        let (low, high) = self.stale.split_at(self.stale.len() / 2);
+        let from = high.first().map_or(self.first, |&block| block as usize);
+        let (blocks, upper_blocks) = self.blocks.split_at_mut(from - self.first);
+        let (hulls, upper_hulls) = self.hulls.split_at_mut(from - self.first);
+        let (news, upper_news) = self.news.split_at_mut(from - self.first);
+        (
+            Stretch { first: self.first, stale: low, blocks, hulls, news },
+            Stretch { first: from, stale: high, blocks: upper_blocks, hulls: upper_hulls, news: upper_news },
+        )
+    }
+}
+
 /// The renewing of stale blocks, to be compiled for each kind of registers.
 struct Renew<'a, G> {
     gather: G,
-    stale: &'a [u32],
-    blocks: &'a mut Blocks,
-    nodes: &'a Nodes,
+    stretch: Stretch<'a>,
+    around: &'a Around<'a>,
 }
 
 impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
@@ -129,25 +180,25 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { gather, stale, blocks, nodes } = self;
-        let is_far = blocks.blocks.len() >= FAR;
-        for (i, at) in stale.iter().map(|&block| block as usize).enumerate() {
-            if is_far {
-                ask_ahead(blocks, &stale[i..]);
+        let Self { gather, stretch, around } = self;
+        let Stretch { first, stale, blocks, hulls, news } = stretch;
+        for (i, &block) in stale.iter().enumerate() {
+            if around.is_far {
+                ask_ahead(around.known, blocks, first, &stale[i..]);
             }
-            let node = blocks.owner[at];
+            let at = block as usize - first;
+            let node = around.owner[block as usize];
             let n = node as usize;
-            let site = Site { cell: nodes.cell[n], straddled: nodes.straddled[n] };
-            let found = gather.renew(&mut blocks.blocks[at], &blocks.known, &site);
-            blocks.hulls[at] = found.hull;
+            let site = Site { cell: around.nodes.cell[n], straddled: around.nodes.straddled[n] };
+            let found = gather.renew(&mut blocks[at], around.known, &site);
+            hulls[at] = found.hull;
             // A leaf at the root holds what there is; in an inner node, all that move are looked at.
-            let out = match (nodes.is_leaf(node), node) {
+            let out = match (around.nodes.is_leaf(node), node) {
                 (false, _) => found.moved,
                 (true, 0) => 0,
                 (true, _) => found.out,
             };
-            let news = &mut blocks.news[at];
-            *news = News { moved: found.moved, again: found.moved & news.moved, out };
+            news[at] = News { moved: found.moved, again: found.moved & news[at].moved, out };
         }
     }
 }
@@ -155,15 +206,15 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
 /// Asks for what later blocks need. Two lines of memory would have to be waited for one after the
 /// other: that of the slots, then those of their boxes.
 #[inline(always)]
-fn ask_ahead(blocks: &Blocks, stale: &[u32]) {
+fn ask_ahead(known: &[Words], blocks: &[Block], first: usize, stale: &[u32]) {
     if let Some(&later) = stale.get(2 * AHEAD) {
-        let block = &blocks.blocks[later as usize];
+        let block = &blocks[later as usize - first];
         prefetch(&block.slots);
         block.min.iter().chain(&block.max).for_each(prefetch);
     }
     if let Some(&later) = stale.get(AHEAD) {
-        for &slot in &blocks.blocks[later as usize].slots {
-            prefetch(blocks.known.get(slot as usize).unwrap_or(&Words::NOTHING));
+        for &slot in &blocks[later as usize - first].slots {
+            prefetch(known.get(slot as usize).unwrap_or(&Words::NOTHING));
         }
     }
 }

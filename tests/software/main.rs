@@ -3,6 +3,7 @@
 mod clipping;
 mod coverage;
 mod oracle;
+mod parts;
 #[path = "../support/proxies.rs"]
 mod proxies;
 mod questions;

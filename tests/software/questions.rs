@@ -134,6 +134,46 @@ fn answers_are_about_the_time_of_asking() {
     queries.answers(Wait::Block, |ticket, _| panic!("{ticket:?} is answered twice")).expect("answers");
 }
 
+/// A band that nothing is drawn on holds nothing of the frame before.
+#[test]
+fn questions_about_an_empty_frame_do_not_see_the_last_one() {
+    let view = pixel_view(64, 256);
+    let quad = |z: f32, bottom: f32| {
+        let [a, b, c, d] =
+            [(-8.0, -8.0), (72.0, -8.0), (72.0, bottom), (-8.0, bottom)].map(|(x, y)| Vec3::new(x, y, z));
+        soup(&[[a, b, c], [a, c, d]])
+    };
+    let proxies = [
+        flat(PixelRect { x0: 0, y0: 0, x1: 64, y1: 256 }, 0.5),
+        flat(PixelRect { x0: 3, y0: 200, x1: 9, y1: 207 }, 0.5),
+    ];
+    let mut queries = SoftwareQueries::new();
+    for (second, visible) in [(vec![], true), (vec![quad(0.9, 20.0)], true), (vec![quad(0.9, 270.0)], false)]
+    {
+        draw(&mut queries, &view, &[quad(0.9, 270.0)]);
+        draw(&mut queries, &view, &second);
+        compare(&mut queries, &proxies);
+        queries.ask(Ticket(0), &proxies[1..], Want::Any).expect("ask");
+        queries.answers(Wait::Block, |_, answer| assert_eq!(answer.is_visible(0), visible)).expect("answers");
+    }
+}
+
+/// Before any frame there is nothing to ask about, and nothing is hidden.
+#[test]
+fn questions_before_the_first_frame_are_not_answered() {
+    let mut queries = SoftwareQueries::new();
+    let proxy = flat(PixelRect { x0: 0, y0: 0, x1: 8, y1: 8 }, 0.5);
+    queries.ask(Ticket(5), &[proxy], Want::Any).expect("ask");
+    let mut answers = 0;
+    queries
+        .answers(Wait::Block, |_, answer| {
+            assert!(matches!(answer, Answer::Unknown));
+            answers += 1;
+        })
+        .expect("answers");
+    assert_eq!(answers, 1);
+}
+
 /// A proxy that cannot be evaluated, or a dual question about several, is never a reason to hide.
 #[test]
 fn what_cannot_be_evaluated_is_visible() {

@@ -1,6 +1,7 @@
 //! The raster pipeline: draw calls in, samples out.
 //!
-//! The screen is cut into bands of rows that fit the second-level cache. Each draw call is
+//! The screen is cut into bands of rows, which fit an ordinary second-level cache up to a width of
+//! 4096 pixels. Each draw call is
 //! bounded once and listed in the bands that it may touch; then every band takes its calls in
 //! order, each by one thread: what is hidden by what the band holds already is left out, of large
 //! meshes part by part and from near to far; the rest is transformed, set up and sampled while it
@@ -50,7 +51,7 @@ pub(crate) struct Work {
     pub(crate) calls: u64,
     /// Triangles of those.
     pub(crate) triangles: u64,
-    /// Triangles with a sample in their bounding box.
+    /// See [`SoftwareStats::rasterised`](super::SoftwareStats::rasterised).
     pub(crate) kept: u64,
 }
 

@@ -137,7 +137,7 @@ fn project(screen: &Screen, corner: &Corner) -> Option<Vertex> {
         // it.
         let inside = |v: i32, side: i32| v.wrapping_sub(side * centre).unsigned_abs() <= GUARD_LAST;
         let valid = inside(vertex.x, screen.width) && inside(vertex.y, screen.height);
-        return (valid && vertex.nearness.is_finite()).then_some(Vertex { code: 0, ..vertex });
+        return (valid && vertex.nearness.is_finite()).then_some(vertex);
     }
     let p = corner.position;
     let (x, y) = (p.x / p.w * f64::from(screen.scale_x), p.y / p.w * f64::from(screen.scale_y));
@@ -148,6 +148,5 @@ fn project(screen: &Screen, corner: &Corner) -> Option<Vertex> {
         x: x.round_ties_even() as i32 + screen.width * centre,
         y: y.round_ties_even() as i32 + screen.height * centre,
         nearness: screen.sign * (p.z / p.w).clamp(0.0, 1.0) as f32,
-        code: 0,
     })
 }

@@ -1,12 +1,12 @@
 //! Answers: how many samples of a proxy are in sight.
 //!
 //! The plain loop of the contract looks at every sample. Here whole nodes of the hierarchy are
-//! decided at once, sixteen children by sixteen, and the result is the same to the sample, by monotonicity: for fixed `dy`, `(a·dx + b·dy) + c` is a
-//! chain of correctly rounded f32 operations, each monotone in its argument, so its value is
-//! monotone in `dx`, rising or falling with the sign of `a`; likewise in `dy`. Over a rectangle of
-//! samples it is therefore least and greatest at the corners that the signs of `a` and `b` name,
-//! *including* rounding. The least of several such functions is bounded by the least of their
-//! bounds.
+//! decided at once, sixteen children by sixteen, and the result is the same to the sample, by
+//! monotonicity: for fixed `dy`, `(a·dx + b·dy) + c` is a chain of correctly rounded f32
+//! operations, each monotone in its argument, so its value is monotone in `dx`, rising or falling
+//! with the sign of `a`; likewise in `dy`. Over a rectangle of samples it is therefore least and
+//! greatest at the corners that the signs of `a` and `b` name, *including* rounding. The least of
+//! several such functions is bounded by the least of their bounds.
 
 use super::depth::Depth;
 use super::hi_z::HiZ;
@@ -41,7 +41,7 @@ const STACK: usize = 128;
 /// Whether some sample of a proxy is in sight.
 #[inline(always)]
 pub(crate) fn any<I: Isa>(scene: Scene<'_>, proxy: &Proxy) -> bool {
-    let Some(question) = Asked::<I>::new(scene, proxy) else { return false };
+    let Some(question) = Inquiry::<I>::new(scene, proxy) else { return false };
     let mut found = false;
     question.walk(
         #[inline(always)]
@@ -64,7 +64,7 @@ pub(crate) fn any<I: Isa>(scene: Scene<'_>, proxy: &Proxy) -> bool {
 /// How many samples of a proxy are in sight, and how many it covers.
 #[inline(always)]
 pub(crate) fn dual<I: Isa>(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
-    let Some(question) = Asked::<I>::new(scene, proxy) else { return (0, 0) };
+    let Some(question) = Inquiry::<I>::new(scene, proxy) else { return (0, 0) };
     let (mut seen, mut total) = (0, 0);
     question.walk(
         #[inline(always)]
@@ -128,7 +128,7 @@ impl<I: Isa> Judged<I> {
 }
 
 /// A proxy that is asked about.
-struct Asked<'a, I: Isa> {
+struct Inquiry<'a, I: Isa> {
     scene: Scene<'a>,
     proxy: &'a Proxy,
     /// Its pixels in the viewport; not empty.
@@ -137,7 +137,7 @@ struct Asked<'a, I: Isa> {
     lane_y: I::I,
 }
 
-impl<'a, I: Isa> Asked<'a, I> {
+impl<'a, I: Isa> Inquiry<'a, I> {
     #[inline(always)]
     fn new(scene: Scene<'a>, proxy: &'a Proxy) -> Option<Self> {
         let image = scene.depth.image();
@@ -223,8 +223,8 @@ impl<'a, I: Isa> Asked<'a, I> {
     fn judge(&self, level: u32, x: u32, y: u32) -> Judged<I> {
         let side = TILE << (TILE_BITS * level);
         let rect = &self.rect;
-        let (x0, x1) = children::<I>(x, side, self.lane_x, rect.x0, rect.x1);
-        let (y0, y1) = children::<I>(y, side, self.lane_y, rect.y0, rect.y1);
+        let (x0, x1) = child_pixels::<I>(x, side, self.lane_x, rect.x0, rect.x1);
+        let (y0, y1) = child_pixels::<I>(y, side, self.lane_y, rect.y0, rect.y1);
         let first = [self.offset(x0, 0), self.offset(y0, 1)];
         let last = [self.offset(x1, 0), self.offset(y1, 1)];
         let zero = I::splat_f(0.0);
@@ -282,7 +282,7 @@ fn nodes(rect: &PixelRect, bits: u32) -> ([u32; 2], [u32; 2]) {
 
 /// The first and the last pixels, between two, of the children of a node, on one axis.
 #[inline(always)]
-fn children<I: Isa>(node: u32, side: i32, lanes: I::I, from: u32, end: u32) -> (I::I, I::I) {
+fn child_pixels<I: Isa>(node: u32, side: i32, lanes: I::I, from: u32, end: u32) -> (I::I, I::I) {
     let start = I::add(I::splat(4 * side * node as i32), I::mul(lanes, I::splat(side)));
     let last = I::add(start, I::splat(side - 1));
     (I::max(start, I::splat(from as i32)), I::min(last, I::splat(end as i32 - 1)))

@@ -123,7 +123,7 @@ impl<'a> DepthImage<'a> {
         (0..self.depth.width).map(move |x| image.at(x, y))
     }
 
-    /// The nearness of a pixel.
+    /// The nearness of a pixel of the viewport.
     pub fn at(&self, x: u32, y: u32) -> f32 {
         let side = BLOCK as u32;
         if self.depth.pending[(y / BAND_ROWS) as usize] {
@@ -210,7 +210,7 @@ impl Sink for DepthSink<'_> {
         // the cache.
         let covering = I::blend_f(covered, I::splat_f(f32::NEG_INFINITY), nearness);
         *pixels = I::store_f(I::max_f(covering, I::load_f(pixels)));
-        self.base.stale[block] = (self.base.stale[block] | STALE) + 1;
+        self.base.note(block);
     }
 
     #[inline(always)]
@@ -219,7 +219,7 @@ impl Sink for DepthSink<'_> {
         let kept = &mut self.blocks[block].0[at / LANES % LANES][at % LANES];
         // Stored in any case: which one is nearer cannot be foretold.
         *kept = if nearness > *kept { nearness } else { *kept };
-        self.base.stale[block] = (self.base.stale[block] | STALE) + 1;
+        self.base.note(block);
     }
 }
 

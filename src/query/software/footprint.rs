@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3, Vec4};
 
-use super::isa::{Isa, LANES, Mask, affine};
+use super::isa::{Isa, LANES, Mask, affine, magnitude};
 use super::pass::DrawCall;
 use super::vertex::{Screen, clip_from_object, snap_lanes};
 use crate::geom::{Aabb, PixelRect, View};
@@ -29,7 +29,10 @@ pub(crate) struct Footprint {
 #[inline(always)]
 pub(crate) fn footprint<I: Isa>(view: &View, screen: &Screen, call: &DrawCall) -> Footprint {
     let clip_from_object = clip_from_object(view.clip_from_world(), &call.world_from_object);
-    let corners = Corners::new::<I>(&clip_from_object, &call.mesh.bounds(), screen.sign);
+    if call.triangle_count() == 0 {
+        return Footprint { clip_from_object, rect: None, nearest: f32::NEG_INFINITY };
+    }
+    let corners = Extremes::new::<I>(&clip_from_object, &call.mesh.bounds(), screen.sign);
     if corners.outside() {
         return Footprint { clip_from_object, rect: None, nearest: f32::NEG_INFINITY };
     }
@@ -39,7 +42,7 @@ pub(crate) fn footprint<I: Isa>(view: &View, screen: &Screen, call: &DrawCall) -
 }
 
 /// The extremes of a box's corners in clip space and on the screen.
-struct Corners {
+struct Extremes {
     least: [f32; LANES],
     greatest: [f32; LANES],
     /// See [`GAMMA`]; of x, y, z and w.
@@ -52,7 +55,7 @@ const SCREEN: usize = 0;
 const W: usize = 3;
 const PLANES: std::ops::Range<usize> = 4..10;
 
-impl Corners {
+impl Extremes {
     #[inline(always)]
     fn new<I: Isa>(m: &Mat4, bounds: &Aabb, sign: f32) -> Self {
         // Bit k of a lane chooses the side of axis k.
@@ -92,8 +95,9 @@ impl Corners {
         // A sum of two components errs by both errors.
         let [x, y, z, w] = self.error.to_array();
         let errors = [x + w, x + w, y + w, y + w, z, z + w];
-        let finite = self.least.iter().chain(&self.greatest).all(|v| v.is_finite());
-        finite && self.greatest[PLANES].iter().zip(errors).any(|(greatest, error)| greatest + error < 0.0)
+        let finite = |v: &[f32; LANES]| v[PLANES].iter().all(|v| v.is_finite());
+        let usable = finite(&self.least) && finite(&self.greatest);
+        usable && self.greatest[PLANES].iter().zip(errors).any(|(greatest, error)| greatest + error < 0.0)
     }
 
     /// The pixels that the box covers and its greatest nearness; none if it comes too near the
@@ -227,11 +231,6 @@ impl<I: Isa> Reach<I> {
     }
 }
 
-#[inline(always)]
-fn magnitude<I: Isa>(v: I::F) -> I::F {
-    I::max_f(v, I::sub_f(I::splat_f(0.0), v))
-}
-
 /// The column or row of normalised coordinates, some pixels on: two of them cover snapping and all
 /// rounding. Another where it cannot be told.
 #[inline(always)]
@@ -240,4 +239,62 @@ fn place<I: Isa>(v: I::F, side: i32, more: f32, usable: Mask, otherwise: f32) ->
     let v = I::add_f(I::add_f(I::mul_f(v, half), half), I::splat_f(more));
     let v = I::max_f(I::min_f(v, side), I::splat_f(-2.0));
     snap_lanes::<I>(I::blend_f(usable, I::splat_f(otherwise), v))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Affine3A, Quat};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::super::isa::Portable;
+    use super::super::vertex::{GUARD_LIMIT, SUBPIXELS, clip_position};
+    use super::*;
+    use crate::geom::Viewport;
+
+    #[test]
+    fn the_image_of_every_point_lies_in_the_extents_of_its_box() {
+        let mut dice = ChaCha8Rng::seed_from_u64(1);
+        let view =
+            View::look_at(Vec3::ZERO, Vec3::NEG_Z, 70.0, 0.1, Viewport::new(640, 400)).expect("a view");
+        let screen = Screen::new(&view);
+        let (mut seen, mut bounded) = (0, 0);
+        for _ in 0..400 {
+            let mut v = |r: f32| Vec3::from_array(std::array::from_fn(|_| dice.random_range(-r..r)));
+            // Boxes far from their own origin lose digits on their way to the view.
+            let away = v(1.0) * [0.0, 1e3, 1e6][seen % 3];
+            let turn = Quat::from_scaled_axis(v(3.0));
+            let to = Vec3::new(0.0, 0.0, -8.0) + v(6.0) - turn * away;
+            let place = Affine3A::from_rotation_translation(turn, to);
+            let matrix = clip_from_object(view.clip_from_world(), &place);
+            let (centre, half) = (away + v(1.0), v(0.5).abs());
+            let lanes = |v: Vec3| v.to_array().map(|v| [v; LANES]);
+            let found =
+                extents::<Portable>(&matrix, &screen, &Boxes { centre: lanes(centre), half: lanes(half) });
+            bounded += usize::from(found.nearest[0].is_finite());
+            for _ in 0..20 {
+                let p = centre + v(1.0) * half;
+                if ((p - centre).abs().cmpgt(half)).any() {
+                    continue;
+                }
+                let clip = clip_position(&matrix, p);
+                let at = screen.project(clip.x, clip.y, clip.z, clip.w);
+                let offset = [at.x - screen.width * SUBPIXELS / 2, at.y - screen.height * SUBPIXELS / 2];
+                let clipped = clip.w < clip.z || clip.z < 0.0 || clip.w <= 0.0;
+                if clipped || offset.iter().any(|v| v.abs() as f32 > GUARD_LIMIT) {
+                    continue;
+                }
+                seen += 1;
+                assert!(at.nearness <= found.nearest[0], "{at:?} is nearer than {}", found.nearest[0]);
+                for (v, axis) in [(at.x, 0), (at.y, 1)] {
+                    let side = [screen.width, screen.height][axis];
+                    let pixel = v.div_euclid(SUBPIXELS);
+                    let (first, last) = (found.first[axis][0], found.last[axis][0]);
+                    assert!(pixel < 0 || first <= pixel, "{pixel} is before {first}");
+                    assert!(pixel >= side || pixel <= last, "{pixel} is beyond {last}");
+                }
+            }
+        }
+        assert!(seen > 4000 && bounded > 200, "{seen} points, {bounded} boxes in front");
+    }
 }

@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::depth::Depth;
-use super::isa::{Isa, LANES};
+use super::isa::{Isa, LANES, greatest, least};
 use super::layout::{BLOCK_BITS, Block, TILE_BITS};
 use super::level::SimdLevel;
 use super::simd;
@@ -40,6 +40,14 @@ struct Level {
 pub(crate) struct Base<'a> {
     pub(crate) farthest: &'a mut [[f32; LANES]],
     pub(crate) stale: &'a mut [u32],
+}
+
+impl Base<'_> {
+    /// Notes a change of a block. The count stays below [`STALE`]: it wraps to a small one.
+    #[inline(always)]
+    pub(crate) fn note(&mut self, block: usize) {
+        self.stale[block] = self.stale[block].wrapping_add(1) | STALE;
+    }
 }
 
 impl HiZ {
@@ -137,9 +145,8 @@ impl HiZ {
                 let (below, above) = self.levels.split_at_mut(level);
                 let (below, above) = (&below[level - 1], &mut above[0]);
                 let node = y as usize * below.across + x as usize;
-                let far = below.farthest[node].iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
-                let near =
-                    below.nearest[node].iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
+                let far = least(&below.farthest[node]);
+                let near = greatest(&below.nearest[node]);
                 let lane = ((y & 3) << 2 | (x & 3)) as usize;
                 (x, y) = (x >> TILE_BITS, y >> TILE_BITS);
                 let node = y as usize * above.across + x as usize;

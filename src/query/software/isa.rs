@@ -105,6 +105,34 @@ pub(crate) fn store_each_f<I: Isa, const N: usize>(v: [I::F; N]) -> [[f32; LANES
     out
 }
 
+/// One lane of each.
+#[inline(always)]
+pub(crate) fn of_lane<T: Copy, const N: usize>(rows: &[[T; LANES]; N], lane: usize) -> [T; N] {
+    let mut out = [rows[0][lane]; N];
+    for i in 1..N {
+        out[i] = rows[i][lane];
+    }
+    out
+}
+
+/// Without the sign.
+#[inline(always)]
+pub(crate) fn magnitude<I: Isa>(v: I::F) -> I::F {
+    I::max_f(v, I::sub_f(I::splat_f(0.0), v))
+}
+
+/// The least of sixteen.
+#[inline(always)]
+pub(crate) fn least(run: &[f32; LANES]) -> f32 {
+    run.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a })
+}
+
+/// The greatest of sixteen.
+#[inline(always)]
+pub(crate) fn greatest(run: &[f32; LANES]) -> f32 {
+    run.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
+}
+
 /// What an affine function of three variables yields: `((c0·x + c1·y) + c2·z) + c3`.
 #[inline(always)]
 pub(crate) fn affine<I: Isa>(c: [f32; 4], [x, y, z]: [I::F; 3]) -> I::F {
@@ -276,10 +304,10 @@ impl Isa for Portable {
     }
     #[inline(always)]
     fn least(runs: &[[f32; LANES]; LANES]) -> Self::F {
-        map(*runs, |run| run.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a }))
+        map(*runs, |run| least(&run))
     }
     #[inline(always)]
     fn greatest(runs: &[[f32; LANES]; LANES]) -> Self::F {
-        map(*runs, |run| run.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a }))
+        map(*runs, |run| greatest(&run))
     }
 }

@@ -29,18 +29,19 @@ impl SimdLevel {
 
 #[cfg(target_arch = "x86_64")]
 fn detect() -> SimdLevel {
-    if is_x86_feature_detected!("avx512f")
+    // Each level has all that those below it need.
+    let sse41 = is_x86_feature_detected!("sse4.1");
+    let avx2 = sse41 && is_x86_feature_detected!("avx2");
+    let avx512 = avx2
+        && is_x86_feature_detected!("avx512f")
         && is_x86_feature_detected!("avx512dq")
         && is_x86_feature_detected!("avx512bw")
-        && is_x86_feature_detected!("avx512vl")
-    {
-        SimdLevel::Avx512
-    } else if is_x86_feature_detected!("avx2") {
-        SimdLevel::Avx2
-    } else if is_x86_feature_detected!("sse4.1") {
-        SimdLevel::Sse41
-    } else {
-        SimdLevel::Portable
+        && is_x86_feature_detected!("avx512vl");
+    match (avx512, avx2, sse41) {
+        (true, ..) => SimdLevel::Avx512,
+        (_, true, _) => SimdLevel::Avx2,
+        (.., true) => SimdLevel::Sse41,
+        _ => SimdLevel::Portable,
     }
 }
 

@@ -59,7 +59,8 @@ pub struct SoftwareStats {
     pub skipped_calls: u64,
     /// Triangles of the draw calls that were not skipped.
     pub triangles: u64,
-    /// Triangles of those that had a sample in their bounding box.
+    /// Triangles of those that had a sample in their bounding box, but for those of parts that were
+    /// hidden where they begin. What clipping leaves of a triangle counts by pieces.
     pub rasterised: u64,
     /// Boxes asked about.
     pub boxes: u64,
@@ -160,7 +161,7 @@ impl SoftwareQueries {
 
     /// Answers everything asked so far, against the depth as it is now.
     fn answer(&mut self) {
-        if self.answered == self.asked.len() {
+        if self.answered == self.asked.len() || self.view.is_none() {
             return;
         }
         self.depth.settle();
@@ -231,6 +232,12 @@ impl QueryBackend for SoftwareQueries {
 
     fn answers(&mut self, _: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
         self.answer();
+        if self.view.is_none() {
+            // No frame has begun: there is nothing to ask about.
+            self.asked.iter().for_each(|asked| deliver(asked.ticket, Answer::Unknown));
+            self.forget();
+            return Ok(());
+        }
         for asked in &self.asked {
             let found = &self.found[asked.proxies.clone()];
             let usable = self.proxies[asked.proxies.clone()].iter().all(count::is_usable);

@@ -6,7 +6,7 @@
 //! for `large`.
 #![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
 
-use super::isa::{Isa, LANES, Mask, store_each, store_each_f};
+use super::isa::{Isa, LANES, Mask, of_lane, store_each, store_each_f};
 use super::large::Triangle;
 use super::layout::{BLOCK, BLOCK_BITS, BLOCK_PIXELS, TILE, TILE_BITS};
 use super::setup::{Corners, SMALL_EXTENT, Setup, first_samples, last_samples};
@@ -107,8 +107,8 @@ pub(crate) fn triangles<I: Isa, S: Sink>(
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
-            let (x, y) = (column(&x, lane), column(&y, lane));
-            room.large.push((Triangle { x, y, nearness: column(&nearness, lane) }, ids.of(lane)));
+            let (x, y) = (of_lane(&x, lane), of_lane(&y, lane));
+            room.large.push((Triangle { x, y, nearness: of_lane(&nearness, lane) }, ids.of(lane)));
         }
     }
     begin_here.count_ones()
@@ -184,14 +184,4 @@ pub(crate) fn addresses<I: Isa>(column: I::I, row: I::I, blocks: usize) -> I::I 
     );
     let lane = I::or(I::shift_left::<2>(I::and(row, three)), I::and(column, three));
     I::or(I::shift_left::<8>(block), I::or(I::shift_left::<4>(tile), lane))
-}
-
-/// One lane of each.
-#[inline(always)]
-pub(crate) fn column<T: Copy, const N: usize>(rows: &[[T; LANES]; N], lane: usize) -> [T; N] {
-    let mut out = [rows[0][lane]; N];
-    for i in 1..N {
-        out[i] = rows[i][lane];
-    }
-    out
 }

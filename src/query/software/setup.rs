@@ -8,7 +8,7 @@
 //! few ulps of that. All paths share [`Shading::nearness`]; the same triangle yields the same bits
 //! in each of them.
 
-use super::isa::{Isa, Mask};
+use super::isa::{Isa, LANES, Mask, magnitude, of_lane, splat_each, store_each_f};
 use super::vertex::{SUBPIXEL_BITS, SUBPIXELS};
 
 /// The longest side of a triangle's bounding box, in subpixels, that is rasterised in i32: an edge
@@ -107,6 +107,21 @@ pub(crate) struct Shading<I: Isa> {
 }
 
 impl<I: Isa> Shading<I> {
+    /// Every lane, to be taken up by [`Shading::of_lane`].
+    #[inline(always)]
+    pub(crate) fn stored(&self) -> [[f32; LANES]; 6] {
+        let Self { inverse_area, base, along_1, along_2, least, greatest } = *self;
+        store_each_f::<I, 6>([inverse_area, base, along_1, along_2, least, greatest])
+    }
+
+    /// One triangle's, in all lanes.
+    #[inline(always)]
+    pub(crate) fn of_lane(stored: &[[f32; LANES]; 6], lane: usize) -> Self {
+        let [inverse_area, base, along_1, along_2, least, greatest] =
+            splat_each::<I, 6>(of_lane(stored, lane));
+        Self { inverse_area, base, along_1, along_2, least, greatest }
+    }
+
     /// From the nearness at the corners and twice the area.
     #[inline(always)]
     pub(crate) fn new(n: [I::F; 3], area: I::F) -> Self {
@@ -125,7 +140,8 @@ impl<I: Isa> Shading<I> {
     ///
     /// Nearness is linear over the screen, so it grows toward one corner of a tile by its change
     /// along both sides. Each of the terms here is a few roundings of 2⁻²⁴ away from its exact
-    /// value, each sum at a sample as many from its own; 2⁻²⁰ of all magnitudes covers both.
+    /// value, each sum at a sample as many from its own; 2⁻²⁰ of all magnitudes covers both. Below
+    /// the least normal number roundings are no shares any more: that number covers them.
     #[inline(always)]
     pub(crate) fn rise(&self, step_x: &[I::I; 3], step_y: &[I::I; 3], side: f32) -> I::F {
         let zero = I::splat_f(0.0);
@@ -139,7 +155,8 @@ impl<I: Isa> Shading<I> {
         let sides = I::splat_f(side - 1.0);
         let corners = I::add_f(magnitude::<I>(self.along_1), magnitude::<I>(self.along_2));
         let all = I::add_f(I::mul_f(all, sides), I::add_f(corners, magnitude::<I>(self.base)));
-        I::add_f(I::mul_f(rise, sides), I::mul_f(all, I::splat_f(SLACK)))
+        let slack = I::add_f(I::mul_f(all, I::splat_f(SLACK)), I::splat_f(f32::MIN_POSITIVE));
+        I::add_f(I::mul_f(rise, sides), slack)
     }
 
     /// No sample of the triangle in a tile is nearer. The edge functions are those at the tile's
@@ -167,11 +184,6 @@ impl<I: Isa> Shading<I> {
 /// 2⁻²⁰.
 const SLACK: f32 = 1.0 / 1_048_576.0;
 
-#[inline(always)]
-fn magnitude<I: Isa>(v: I::F) -> I::F {
-    I::max_f(v, I::sub_f(I::splat_f(0.0), v))
-}
-
 /// The first sample column (or row) at or after coordinates in subpixels.
 #[inline(always)]
 pub(crate) fn first_samples<I: Isa>(v: I::I) -> I::I {
@@ -188,4 +200,74 @@ pub(crate) fn last_samples<I: Isa>(v: I::I) -> I::I {
 #[inline(always)]
 fn centre<I: Isa>(sample: I::I) -> I::I {
     I::add(I::shift_left::<SUBPIXEL_BITS>(sample), I::splat(SUBPIXELS / 2))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::super::isa::Portable;
+    use super::super::layout::{LANE_X, LANE_Y, TILE};
+    use super::*;
+
+    type Lanes = Corners<Portable>;
+
+    /// Triangles of up to 100 pixels: slivers among them, and depths that are nearly the same, far
+    /// apart or below the least normal number.
+    fn triangles(dice: &mut ChaCha8Rng) -> Lanes {
+        let mut corners = Lanes { x: [[0; LANES]; 3], y: [[0; LANES]; 3], nearness: [[0.0; LANES]; 3] };
+        for lane in 0..LANES {
+            let side = [3, 300, 4000, 25_600][dice.random_range(0..4)];
+            let base = [1e-3, 0.5, 1e-30, 1e-44][dice.random_range(0..4)];
+            let spread = [1e-6, 1.0][dice.random_range(0..2)];
+            for k in 0..3 {
+                corners.x[k][lane] = dice.random_range(0..=side);
+                let height = [side, 3][dice.random_range(0..2)];
+                corners.y[k][lane] = dice.random_range(0..=height);
+                corners.nearness[k][lane] = base * (1.0 + spread * dice.random_range(-1.0..1.0_f32));
+            }
+        }
+        corners
+    }
+
+    /// How many samples are nearer than the bound of their tile, and how many there are.
+    fn beyond(corners: &Lanes, slack: impl Fn(f32) -> f32) -> (u32, u32) {
+        let (mut beyond, mut all) = (0, 0);
+        for tile in 0..26 * 26 {
+            let at = [tile % 26, tile / 26].map(|t| t * TILE);
+            let first = Setup::<Portable>::new(corners, [at[0]; LANES], [at[1]; LANES]);
+            let rise = first.shading.rise(&first.step_x, &first.step_y, TILE as f32);
+            let edge = first.edge.map(Portable::to_f);
+            let bound = first.shading.bound(edge[1], edge[2], rise.map(&slack));
+            for pixel in 0..LANES {
+                let (x, y) = ([at[0] + LANE_X[pixel]; LANES], [at[1] + LANE_Y[pixel]; LANES]);
+                let here = Setup::<Portable>::new(corners, x, y);
+                let nearness =
+                    here.shading.nearness(Portable::to_f(here.edge[1]), Portable::to_f(here.edge[2]));
+                for lane in 0..LANES {
+                    if (0..3).all(|k| here.edge[k][lane] > here.limit[k][lane]) {
+                        all += 1;
+                        beyond += u32::from(nearness[lane] > bound[lane]);
+                    }
+                }
+            }
+        }
+        (beyond, all)
+    }
+
+    #[test]
+    fn no_sample_is_nearer_than_the_bound_of_its_tile() {
+        let mut dice = ChaCha8Rng::seed_from_u64(1);
+        let (mut samples, mut without) = (0, 0);
+        for _ in 0..40 {
+            let corners = triangles(&mut dice);
+            let (beyond_it, all) = beyond(&corners, |rise| rise);
+            assert_eq!(beyond_it, 0);
+            samples += all;
+            // What the bound consists of matters: without the rise, many samples are beyond.
+            without += beyond(&corners, |_| 0.0).0;
+        }
+        assert!(samples > 20_000 && without > 100, "{samples} samples, {without} beyond without the rise");
+    }
 }

@@ -2,10 +2,10 @@
 //! Loops of few steps, of which nobody can foretell how many, take longer.
 #![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
 
-use super::isa::{ALL, Isa, LANES, Mask, splat_each, store_each, store_each_f};
+use super::isa::{ALL, Isa, LANES, Mask, store_each};
 use super::large::Triangle;
 use super::layout::{BLOCK_PIXELS, LANE_X, LANE_Y, TILE, TILE_BITS};
-use super::raster::{Ids, addresses, column};
+use super::raster::{Ids, addresses};
 use super::setup::{Setup, Shading};
 use super::sink::{Id, Sink};
 
@@ -28,7 +28,7 @@ pub(crate) struct Room {
     /// Of each triangle: from a tile's first pixel to each of its pixels.
     across: [[[i32; LANES]; 3]; LANES],
     limit: [[i32; LANES]; 3],
-    /// As [`Shading`] has it, in its order.
+    /// See [`Shading::stored`].
     shading: [[f32; LANES]; 6],
 }
 
@@ -135,8 +135,7 @@ impl Room {
             }
         }
         self.limit = store_each::<I, 3>(setup.limit);
-        let Shading { inverse_area, base, along_1, along_2, least, greatest } = setup.shading;
-        self.shading = store_each_f::<I, 6>([inverse_area, base, along_1, along_2, least, greatest]);
+        self.shading = setup.shading.stored();
         for i in 0..count.min(LISTED) {
             let (at, lane) = (self.tiles[0][i] as usize, self.tiles[1][i] as usize % LANES);
             let (mut e, mut covered) = ([lane_x; 3], ALL);
@@ -144,9 +143,7 @@ impl Room {
                 e[k] = I::add(I::splat(self.edges[k][i]), I::load(&self.across[lane][k]));
                 covered &= I::gt(e[k], I::splat(self.limit[k][lane]));
             }
-            let [inverse_area, base, along_1, along_2, least, greatest] =
-                splat_each::<I, 6>(column(&self.shading, lane));
-            let shading = Shading::<I> { inverse_area, base, along_1, along_2, least, greatest };
+            let shading = Shading::<I>::of_lane(&self.shading, lane);
             let nearness = shading.nearness(I::to_f(e[1]), I::to_f(e[2]));
             sink.tile::<I>(at / BLOCK_PIXELS, at / LANES % LANES, covered, nearness, ids.of(lane));
         }

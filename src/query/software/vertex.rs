@@ -16,30 +16,20 @@ pub(crate) const SUBPIXEL_BITS: u32 = 8;
 pub(crate) const SUBPIXELS: i32 = 1 << SUBPIXEL_BITS;
 
 /// A vertex farther than this from the viewport's centre, in subpixels, is clipped first. It lies
-/// a little inside the planes that [`clip`](super::clip) cuts at, so that a vertex without a code
-/// is never cut.
+/// a little inside the planes that [`clip`](super::clip) cuts at, so that a vertex that
+/// needs no clipping is never cut.
 pub(crate) const GUARD_LIMIT: f32 = 0.98 * 4_194_304.0;
-
-/// The vertex lies before the near plane of reversed z (`w - z < 0`), which is the far plane of
-/// standard z, or is not a number.
-pub(crate) const CODE_W_MINUS_Z: u32 = 1;
-/// The vertex lies beyond the other plane (`z < 0`), or is not a number.
-pub(crate) const CODE_Z: u32 = 2;
-/// The vertex lies outside the guard band or is not finite.
-pub(crate) const CODE_GUARD: u32 = 4;
 
 /// A transformed vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C, align(16))]
 pub(crate) struct Vertex {
-    /// Column in subpixels of the viewport; meaningless if `code` is not 0.
+    /// Column in subpixels of the viewport; it and the others mean nothing for a vertex that needs
+    /// clipping.
     pub(crate) x: i32,
     /// Row in subpixels of the viewport, downward.
     pub(crate) y: i32,
     /// See [`DepthDirection::nearness`].
     pub(crate) nearness: f32,
-    /// 0 for a vertex that needs no clipping.
-    pub(crate) code: u32,
 }
 
 /// How clip space lands on the viewport.
@@ -80,22 +70,14 @@ impl Screen {
     }
 
     /// A clip-space point on the screen.
-    #[inline(always)]
-    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "a comparison with NaN must set the bit")]
     pub(crate) fn project(&self, x: f32, y: f32, z: f32, w: f32) -> Vertex {
         let inverse = 1.0 / w;
         let sx = x * inverse * self.scale_x;
         let sy = y * inverse * self.scale_y;
-        // 0 ≤ z ≤ w leaves w = 0 only with z = 0: then the
-        // position is infinite or NaN and the guard bit is set.
-        let code = u32::from(!(w - z >= 0.0)) * CODE_W_MINUS_Z
-            + u32::from(!(z >= 0.0)) * CODE_Z
-            + u32::from(!(sx.abs() <= GUARD_LIMIT && sy.abs() <= GUARD_LIMIT)) * CODE_GUARD;
         Vertex {
             x: snap(sx).wrapping_add(self.width * (SUBPIXELS / 2)),
             y: snap(sy).wrapping_add(self.height * (SUBPIXELS / 2)),
             nearness: self.sign * (z / w),
-            code,
         }
     }
 }
@@ -134,7 +116,10 @@ pub(crate) struct Projected {
     pub(crate) x: [i32; MOST_VERTICES],
     pub(crate) y: [i32; MOST_VERTICES],
     pub(crate) nearness: [f32; MOST_VERTICES],
-    /// A bit for each vertex that needs clipping, by each of the codes.
+    /// A bit for each vertex that needs clipping: for lying before the near plane of reversed z
+    /// (`w - z < 0`), which is the far plane of standard z; beyond the other plane (`z < 0`);
+    /// outside the guard band. What is not a number has each bit. `0 ≤ z ≤ w` leaves w = 0 only with
+    /// z = 0: then the position is infinite or not a number, and outside the guard band.
     pub(crate) beyond: [u64; 3],
 }
 

@@ -1,9 +1,8 @@
 //! Triangles of some size, one at a time: of each block the tiles that it may cover and that do not
 //! hide it, of each of those the pixels.
 
-use super::isa::{ALL, Isa, LANES, splat_each, store_each, store_each_f};
+use super::isa::{ALL, Isa, LANES, of_lane, store_each};
 use super::layout::{BLOCK_BITS, LANE_X, LANE_Y, TILE, TILE_BITS, children};
-use super::raster::column;
 use super::setup::{Setup, Shading};
 use super::sink::{Id, Sink};
 
@@ -13,7 +12,7 @@ pub(crate) struct Stored {
     step_x: [[i32; LANES]; 3],
     step_y: [[i32; LANES]; 3],
     limit: [[i32; LANES]; 3],
-    /// As [`Shading`] has it, in its order.
+    /// See [`Shading::stored`].
     shading: [[f32; LANES]; 6],
     rise: [f32; LANES],
     first: [[i32; LANES]; 2],
@@ -23,13 +22,12 @@ pub(crate) struct Stored {
 impl Stored {
     #[inline(always)]
     pub(crate) fn new<I: Isa>(setup: &Setup<I>, first: [I::I; 2], last: [I::I; 2]) -> Self {
-        let Shading { inverse_area, base, along_1, along_2, least, greatest } = setup.shading;
         Self {
             edge: store_each::<I, 3>(setup.edge),
             step_x: store_each::<I, 3>(setup.step_x),
             step_y: store_each::<I, 3>(setup.step_y),
             limit: store_each::<I, 3>(setup.limit),
-            shading: store_each_f::<I, 6>([inverse_area, base, along_1, along_2, least, greatest]),
+            shading: setup.shading.stored(),
             rise: I::store_f(setup.shading.rise(&setup.step_x, &setup.step_y, TILE as f32)),
             first: store_each::<I, 2>(first),
             last: store_each::<I, 2>(last),
@@ -41,12 +39,10 @@ impl Stored {
     #[inline(always)]
     pub(crate) fn walk<I: Isa, S: Sink>(&self, lane: usize, id: Id, sink: &mut S) {
         let rows = sink.rows();
-        let ([x0, y0], [x1, y1]) = (column(&self.first, lane), column(&self.last, lane));
-        let [inverse_area, base, along_1, along_2, least, greatest] =
-            splat_each::<I, 6>(column(&self.shading, lane));
-        let shading = Shading::<I> { inverse_area, base, along_1, along_2, least, greatest };
+        let ([x0, y0], [x1, y1]) = (of_lane(&self.first, lane), of_lane(&self.last, lane));
+        let shading = Shading::<I>::of_lane(&self.shading, lane);
         let rise = I::splat_f(self.rise[lane]);
-        let (step_x, step_y) = (column(&self.step_x, lane), column(&self.step_y, lane));
+        let (step_x, step_y) = (of_lane(&self.step_x, lane), of_lane(&self.step_y, lane));
         let (lane_x, lane_y) = (I::load(&LANE_X), I::load(&LANE_Y));
         let mut limit = [lane_x; 3];
         // From a tile's first pixel to each of its pixels; four times that, from a block's first
@@ -59,7 +55,7 @@ impl Stored {
             across[k] = I::add(I::mul(lane_x, I::splat(step_x[k])), I::mul(lane_y, I::splat(step_y[k])));
             reach[k] = I::splat((TILE - 1) * (step_x[k].max(0) + step_y[k].max(0)));
         }
-        let mut row_edge = column(&self.edge, lane);
+        let mut row_edge = of_lane(&self.edge, lane);
         let mut block_row = rows.block(x0, y0);
         for by in y0 >> BLOCK_BITS..=y1 >> BLOCK_BITS {
             let mut edge = row_edge;
