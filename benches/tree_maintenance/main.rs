@@ -3,8 +3,8 @@
 //! In one process, in turns, frame by frame: *write* (the app stores its movers' new boxes and
 //! velocities), *copy* (of all boxes), *scan* (all boxes against a frustum, sixteen at a time), and
 //! the tree with everything on: edits, placement, refit, settling, adaptation. Times are those of
-//! the thread alone. Prints tables of ratios of medians, by number, by manner of moving, and of the
-//! mirror of a world; writes them as CSV, and plots.
+//! the thread alone. Prints tables of ratios of medians, by number, by manner of moving, of the
+//! mirror of a world, and of two threads by the wall's clock; writes them as CSV, and plots.
 //!
 //! `cargo bench --bench tree_maintenance [-- --quick] [-- --count N] [-- --out DIR]`
 
@@ -18,6 +18,7 @@ mod measure;
 mod plot;
 mod sync;
 mod table;
+mod threads;
 mod workload;
 mod yardstick;
 
@@ -47,6 +48,12 @@ struct Flags {
 fn main() -> anyhow::Result<()> {
     let flags = Flags::parse();
     std::fs::create_dir_all(&flags.out)?;
+    // Times are the thread's own: nobody may help it.
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    alone.install(|| measure_all(&flags))
+}
+
+fn measure_all(flags: &Flags) -> anyhow::Result<()> {
     let counts = match flags.count {
         Some(count) => vec![count],
         None if flags.quick => vec![2_500, 13_550],
@@ -88,8 +95,14 @@ fn main() -> anyhow::Result<()> {
     plot::by_manner(&flags.out.join("manners.png"), &rows)?;
 
     let mut table = Table::new(&flags.out.join("sync.csv"), &sync::NAMES)?;
-    for &count in counts.iter().filter(|&&count| count >= 100_000 || flags.quick) {
+    let large = || counts.iter().copied().filter(|&count| count >= 100_000 || flags.quick);
+    for count in large() {
         table.add(sync::cells(count))?;
+    }
+
+    let mut table = Table::new(&flags.out.join("threads.csv"), &threads::NAMES)?;
+    for (count, moving) in large().flat_map(|count| [(count, 0.2), (count, 1.0)]) {
+        table.add(threads::cells(count, moving)?)?;
     }
     Ok(())
 }
