@@ -1,9 +1,14 @@
 //! The tree of tercet beside other crates' trees: the same boxes, moves and frustums, in turns in
-//! one process, and the same objects found, which is checked.
+//! one process, and the same objects found, which is checked. Prints a table, and writes it beside a
+//! plot under `out/peers`.
 //!
 //! `cargo run --release --manifest-path benches/peers/Cargo.toml [-- --quick]`
 
+mod plot;
 mod trees;
+
+#[path = "../../../examples/support/canvas.rs"]
+mod canvas;
 
 #[path = "../../tree_maintenance/clock.rs"]
 mod clock;
@@ -12,17 +17,25 @@ mod workload;
 #[path = "../../tree_maintenance/yardstick.rs"]
 mod yardstick;
 
+use std::path::Path;
+
 use clock::{median, seconds};
 use trees::Peer;
 use workload::{Manner, Workload};
 use yardstick::Scan;
 
-fn main() {
+/// The columns of the table.
+const NAMES: [&str; 6] = ["boxes", "tree", "update / write", "wide / scan", "mid / scan", "near / scan"];
+
+fn main() -> anyhow::Result<()> {
+    let out = Path::new("out/peers");
+    std::fs::create_dir_all(out)?;
+    let mut csv = csv::Writer::from_path(out.join("table.csv"))?;
+    csv.write_record(NAMES)?;
     let quick = std::env::args().any(|argument| argument == "--quick");
     let counts: &[usize] = if quick { &[2_500] } else { &[13_550, 100_000] };
-    println!(
-        "| boxes | tree | update / write | wide / scan | mid / scan | near / scan |\n|---|---|---|---|---|---|"
-    );
+    println!("| {} |\n|{}", NAMES.join(" | "), "---|".repeat(NAMES.len()));
+    let mut rows = Vec::new();
     for &count in counts {
         let frames = if quick { 10 } else { 40 };
         let mut all = Vec::new();
@@ -33,23 +46,38 @@ fn main() {
             run::<trees::bvh::Bvh>("bvh", count, frames.min(5)),
             run::<trees::rstar::Rstar>("rstar", count, frames.min(5)),
         ] {
-            println!(
-                "| {count} | {} | {:.1} | {:.2} | {:.2} | {:.2} |",
-                row.name, row.update, row.query[0], row.query[1], row.query[2]
-            );
+            let cells = row.cells();
+            println!("| {} |", cells.join(" | "));
+            csv.write_record(&cells)?;
             all.push(row.checksum);
+            rows.push(row);
         }
         // Trees that ran for fewer frames stand elsewhere: they are compared at their last common one.
         assert!(all.iter().all(|sum| sum == &all[0]), "every tree finds the same objects: {all:?}");
     }
+    csv.flush()?;
+    plot::ratios(&out.join("plot.png"), &rows)
 }
 
 /// One tree: ratios of medians, and what it found in the fifth frame.
 struct Row {
     name: &'static str,
+    count: usize,
     update: f64,
     query: [f64; 3],
     checksum: [(usize, u64); 3],
+}
+
+impl Row {
+    fn cells(&self) -> [String; 6] {
+        let [wide, mid, near] = self.query.map(|ratio| format!("{ratio:.2}"));
+        [self.count.to_string(), self.name.to_owned(), format!("{:.1}", self.update), wide, mid, near]
+    }
+
+    /// The ratios, in the order of the columns.
+    fn ratios(&self) -> [f64; 4] {
+        [self.update, self.query[0], self.query[1], self.query[2]]
+    }
 }
 
 /// Half of the boxes move.
@@ -79,6 +107,7 @@ fn run<P: Peer>(name: &'static str, count: usize, frames: usize) -> Row {
     let ratio = |a: &[f64], b: &[f64]| median(a) / median(b);
     Row {
         name,
+        count,
         update: ratio(&updates, &writes),
         query: [0, 1, 2].map(|i| ratio(&queries[i], &scans[i])),
         checksum,
