@@ -25,12 +25,12 @@
 use std::collections::VecDeque;
 
 use super::front::{Front, FrontQueue};
-use super::order::Waiting;
 use super::skip::{Seen, Share, Turnover};
-use super::{Action, Context, Extent, Fate, History, Policy, Samples, ScreenTiles, Skip};
+use super::waves::{Waiting, Waves};
+use super::{Action, Context, Extent, Fate, History, Policy, Samples, Skip};
 use crate::Error;
 use crate::dial::{self, Dial};
-use crate::geom::{PlaneMask, Proxy, Question, Viewport};
+use crate::geom::{PlaneMask, Proxy, Question};
 use crate::query::{Answer, Ticket, Wait, Want};
 use crate::tree::{NodeId, Votes};
 
@@ -59,17 +59,10 @@ pub struct DualQuery {
     turnover: Turnover,
     /// Nodes to look at, nearest first.
     front: FrontQueue,
-    /// Questions held back in the last wave, nearest first, and those held back in this one.
-    held: Vec<Waiting>,
-    held_again: Vec<Waiting>,
-    /// What is asked in this wave; a ticket is an index.
-    wave: Vec<Waiting>,
+    questions: Waves,
     /// Leaves drawn without an answer, to be asked about in the last wave.
     unasked: Vec<Front>,
     stage: Stage,
-    /// Proxies of the frame, so that a node held back is not projected again.
-    proxies: Vec<Proxy>,
-    tiles: ScreenTiles,
     waves: u32,
     /// Actions decided on, in order.
     out: VecDeque<Step>,
@@ -103,13 +96,9 @@ impl Default for DualQuery {
             history: History::default(),
             turnover: Turnover::default(),
             front: FrontQueue::default(),
-            held: Vec::new(),
-            held_again: Vec::new(),
-            wave: Vec::new(),
+            questions: Waves::default(),
             unasked: Vec::new(),
             stage: Stage::Drawing,
-            proxies: Vec::new(),
-            tiles: ScreenTiles::new(Viewport::new(1, 1)),
             waves: 0,
             out: VecDeque::new(),
             opened: Vec::new(),
@@ -131,17 +120,13 @@ impl Policy for DualQuery {
         self.history.follow(cx.tree);
         self.turnover.begin();
         self.front.clear();
-        self.held.clear();
-        self.held_again.clear();
-        self.wave.clear();
+        self.questions.begin(cx.view.viewport());
         self.unasked.clear();
         self.stage = Stage::Drawing;
-        self.proxies.clear();
         self.out.clear();
         self.opened.clear();
         self.votes.votes.clear();
         self.votes.forward = cx.view.forward();
-        self.tiles = ScreenTiles::new(cx.view.viewport());
         self.waves = 0;
         self.front.push(cx, cx.tree.root(), PlaneMask::ALL);
     }
@@ -156,7 +141,7 @@ impl Policy for DualQuery {
         match self.out.pop_front() {
             Some(Step::Draw(node, extent)) => Action::Draw(node, extent),
             Some(Step::Ask(i)) => {
-                let boxes = std::slice::from_ref(&self.proxies[self.wave[i].proxy as usize]);
+                let boxes = std::slice::from_ref(self.questions.proxy(i));
                 Action::Ask { ticket: Ticket(i as u32), boxes, want: Want::Dual }
             }
             Some(Step::Wait) => Action::Wait(Wait::Block),
@@ -168,9 +153,7 @@ impl Policy for DualQuery {
     }
 
     fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
-        let Some(&Waiting { front: Front { node, mask, .. }, .. }) = self.wave.get(ticket.0 as usize) else {
-            return;
-        };
+        let Some(Front { node, mask, .. }) = self.questions.node(ticket.0 as usize) else { return };
         if let (Answer::Dual { visible, total }, true) = (answer, cx.tree.is_leaf(node)) {
             self.votes.count(node, visible, total);
         }
@@ -234,34 +217,27 @@ impl DualQuery {
     /// Goes through all nodes on the way, nearest first: opens, draws, and gathers the questions
     /// that may be asked together.
     fn fill_wave(&mut self, cx: &Context<'_>) {
-        self.wave.clear();
-        self.tiles.clear();
-        let mut held = std::mem::take(&mut self.held);
-        let mut waiting = held.drain(..).peekable();
+        self.questions.start();
         loop {
             // The nearest of what was held back and what is new.
-            let next = match (waiting.peek(), self.front.peek()) {
-                (None, None) => break,
-                (Some(old), new) if new.is_none_or(|new| old.front >= *new) => waiting.next(),
-                _ => self.front.pop().and_then(|front| self.look_at(cx, front)),
+            let question = match self.questions.next_held(self.front.peek()) {
+                Some(question) => question,
+                None => {
+                    let Some(front) = self.front.pop() else { break };
+                    let Some(question) = self.look_at(cx, front) else { continue };
+                    question
+                }
             };
-            let Some(question) = next else { continue };
-            if question.must_wait(&mut self.tiles) && self.waves < self.max_waves {
-                self.held_again.push(question);
-            } else {
-                self.wave.push(question);
-            }
+            self.questions.add(question, self.waves < self.max_waves);
         }
-        drop(waiting);
-        self.held = std::mem::replace(&mut self.held_again, held);
         self.waves += 1;
         self.ask_wave();
     }
 
     /// After all draws: one flush a wave, and the most is in the depth buffer when it asks.
     fn ask_wave(&mut self) {
-        if !self.wave.is_empty() {
-            self.out.extend((0..self.wave.len()).map(Step::Ask));
+        if self.questions.len() > 0 {
+            self.out.extend((0..self.questions.len()).map(Step::Ask));
             self.out.push_back(Step::Wait);
         }
     }
@@ -269,14 +245,14 @@ impl DualQuery {
     /// Asks about the leaves that were drawn without an answer, against the finished depth.
     fn count_unasked(&mut self, cx: &Context<'_>) {
         self.stage = Stage::Counting;
-        self.wave.clear();
+        self.questions.start();
         while let Some(front) = self.unasked.pop() {
             match Question::new(&cx.tree.query_box(front.node), cx.view) {
                 Question::Outside => self.history.entry(front.node).visible = false,
                 Question::Visible => self.votes.near(front.node),
                 Question::Ask(proxy) => {
                     let question = self.with_proxy(front, proxy);
-                    self.wave.push(question);
+                    self.questions.ask(question);
                 }
             }
         }
@@ -320,9 +296,7 @@ impl DualQuery {
     fn with_proxy(&mut self, front: Front, proxy: Proxy) -> Waiting {
         let state = self.history.get(front.node);
         let expected_hidden = state.frame != 0 && !state.visible;
-        let (number, tiles) = (self.proxies.len() as u32, self.tiles.of(proxy.rect));
-        self.proxies.push(proxy);
-        Waiting { front, proxy: number, tiles, expected_hidden }
+        self.questions.question(front, proxy, expected_hidden)
     }
 
     /// An answer, or the near plane, says that a node is visible.

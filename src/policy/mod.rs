@@ -20,6 +20,7 @@ mod recorded;
 mod skip;
 mod statistical;
 mod stop_and_wait;
+mod waves;
 
 pub use chc::Chc;
 pub use chc_plus_plus::{ChcPlusPlus, KeepRule};

@@ -9,28 +9,7 @@
 //! A node that was hidden in the last frame is expected to be hidden again, and would add nothing
 //! to the depth buffer: it waits for others, but nothing waits for it (ours).
 
-use super::front::Front;
 use crate::geom::{PixelRect, Viewport};
-
-/// A node with its question, until the question may be asked. Small, since those that are held
-/// back are looked at again in each wave.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Waiting {
-    pub(super) front: Front,
-    /// The number of its proxy.
-    pub(super) proxy: u32,
-    pub(super) tiles: TileRect,
-    /// Whether others need not wait for it.
-    pub(super) expected_hidden: bool,
-}
-
-impl Waiting {
-    /// Whether it must wait for a nearer one. Otherwise farther ones may have to wait for it, and
-    /// its tiles are covered from now on; and so they are if it waits.
-    pub(super) fn must_wait(&self, tiles: &mut ScreenTiles) -> bool {
-        if self.expected_hidden { tiles.meets(self.tiles) } else { tiles.cover(self.tiles) }
-    }
-}
 
 /// The first and last tiles that a rectangle meets, across and down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

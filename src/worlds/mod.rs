@@ -4,6 +4,25 @@
 //! our own mapping to ranges, and every curve from [`libm`] and the four operations, which
 //! round alike everywhere; glam's matrix products, which may be fused, stay out of it.
 
+/// Declares the parts of a world once: the variants, and the list of them in order of their mesh
+/// index.
+macro_rules! parts {
+    ($($name:ident => $mesh:expr,)*) => {
+        /// A shared mesh; `as usize` is its index in the model.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(super) enum Part { $($name),* }
+
+        impl Part {
+            pub(super) const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// Builds the part's mesh.
+            pub(super) fn mesh(self) -> Mesh {
+                match self { $(Self::$name => $mesh),* }
+            }
+        }
+    };
+}
+
 pub mod city;
 mod dice;
 mod path;

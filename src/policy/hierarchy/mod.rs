@@ -52,10 +52,10 @@ use rand_chacha::ChaCha8Rng;
 use self::record::{Class, Record, Records};
 use self::rope::Verdict;
 use super::front::{Front, FrontQueue};
-use super::order::Waiting;
-use super::{Action, Answer, Context, Extent, Fate, History, Policy, ScreenTiles, Ticket};
+use super::waves::{Waiting, Waves};
+use super::{Action, Answer, Context, Extent, Fate, History, Policy, Ticket};
 use crate::dial::{self, Dial};
-use crate::geom::{PlaneMask, Proxy, Question, Viewport, uncertainty};
+use crate::geom::{PlaneMask, Question, uncertainty};
 use crate::query::{Wait, Want};
 use crate::tree::NodeId;
 use crate::{Counter, Error};
@@ -91,15 +91,9 @@ pub struct Hierarchy {
     dice: ChaCha8Rng,
     /// Nodes to look at, nearest first.
     front: FrontQueue,
-    /// Questions held back in the last wave, nearest first, and those held back in this one.
-    held: Vec<Waiting>,
-    held_again: Vec<Waiting>,
-    /// What is asked in this wave; a ticket is an index.
-    wave: Vec<Waiting>,
-    /// Proxies of the frame, and whether propagation is tried before they are asked about.
-    proxies: Vec<Proxy>,
+    questions: Waves,
+    /// Whether propagation is tried before a question is asked, by the number of its proxy.
     tries: Vec<bool>,
-    tiles: ScreenTiles,
     /// Actions decided on, in order.
     out: VecDeque<Step>,
     /// Inner nodes opened in this frame, parents first.
@@ -136,12 +130,8 @@ impl Hierarchy {
             records: Records::default(),
             dice: ChaCha8Rng::seed_from_u64(1),
             front: FrontQueue::default(),
-            held: Vec::new(),
-            held_again: Vec::new(),
-            wave: Vec::new(),
-            proxies: Vec::new(),
+            questions: Waves::default(),
             tries: Vec::new(),
-            tiles: ScreenTiles::new(Viewport::new(1, 1)),
             out: VecDeque::new(),
             opened: Vec::new(),
             counts: Counts::default(),
@@ -170,15 +160,11 @@ impl Policy for Hierarchy {
         self.dice = ChaCha8Rng::seed_from_u64(self.seed);
         self.dice.set_stream(u64::from(cx.frame));
         self.front.clear();
-        self.held.clear();
-        self.held_again.clear();
-        self.wave.clear();
-        self.proxies.clear();
+        self.questions.begin(cx.view.viewport());
         self.tries.clear();
         self.out.clear();
         self.opened.clear();
         self.counts = Counts::default();
-        self.tiles = ScreenTiles::new(cx.view.viewport());
         self.front.push(cx, cx.tree.root(), PlaneMask::ALL);
     }
 
@@ -189,7 +175,7 @@ impl Policy for Hierarchy {
         match self.out.pop_front() {
             Some(Step::Draw(node, extent)) => Action::Draw(node, extent),
             Some(Step::Ask(i)) => {
-                let boxes = std::slice::from_ref(&self.proxies[self.wave[i].proxy as usize]);
+                let boxes = std::slice::from_ref(self.questions.proxy(i));
                 Action::Ask { ticket: Ticket(i as u32), boxes, want: Want::Dual }
             }
             Some(Step::Wait) => Action::Wait(Wait::Block),
@@ -201,7 +187,7 @@ impl Policy for Hierarchy {
     }
 
     fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
-        let Some(&Waiting { front, .. }) = self.wave.get(ticket.0 as usize) else { return };
+        let Some(front) = self.questions.node(ticket.0 as usize) else { return };
         if answer.is_visible(cx.tradeoff.visible_pixels) {
             let all = matches!(answer, Answer::Dual { visible, total } if visible >= total);
             let class = if all { Class::Visible } else { Class::Partial };
@@ -274,31 +260,24 @@ impl Hierarchy {
     /// Goes through all nodes on the way, nearest first: opens, draws, and gathers the questions
     /// that may be asked together.
     fn fill_wave(&mut self, cx: &Context<'_>) {
-        self.wave.clear();
-        self.tiles.clear();
-        let mut held = std::mem::take(&mut self.held);
-        let mut waiting = held.drain(..).peekable();
+        self.questions.start();
         loop {
             // The nearest of what was held back and what is new.
-            let next = match (waiting.peek(), self.front.peek()) {
-                (None, None) => break,
-                (Some(old), new) if new.is_none_or(|new| old.front >= *new) => waiting.next(),
-                _ => self.front.pop().and_then(|front| self.look_at(cx, front)),
+            let question = match self.questions.next_held(self.front.peek()) {
+                Some(question) => question,
+                None => {
+                    let Some(front) = self.front.pop() else { break };
+                    let Some(question) = self.look_at(cx, front) else { continue };
+                    question
+                }
             };
-            let Some(question) = next else { continue };
             if self.tries[question.proxy as usize] && self.propagate(cx, question.front) {
                 continue;
             }
-            if question.must_wait(&mut self.tiles) {
-                self.held_again.push(question);
-            } else {
-                self.wave.push(question);
-            }
+            self.questions.add(question, true);
         }
-        drop(waiting);
-        self.held = std::mem::replace(&mut self.held_again, held);
-        if !self.wave.is_empty() {
-            self.out.extend((0..self.wave.len()).map(Step::Ask));
+        if self.questions.len() > 0 {
+            self.out.extend((0..self.questions.len()).map(Step::Ask));
             self.out.push_back(Step::Wait);
         }
     }
@@ -333,11 +312,9 @@ impl Hierarchy {
             self.take_as_visible(cx, front, Record { class: last.class, ..Record::default() });
             return None;
         }
-        let (number, tiles) = (self.proxies.len() as u32, self.tiles.of(proxy.rect));
-        self.proxies.push(proxy);
         // Its neighbours may be answered about while it is held back.
         self.tries.push(tries);
-        Some(Waiting { front, proxy: number, tiles, expected_hidden: false })
+        Some(self.questions.question(front, proxy, false))
     }
 
     /// Whether a node's neighbours are looked at: what was partially visible will hardly have become

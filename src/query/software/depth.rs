@@ -3,9 +3,8 @@
 use super::bands::BAND_ROWS;
 use super::hi_z::{Base, HiZ, STALE};
 use super::isa::{Isa, LANES, Mask};
-use super::layout::{BLOCK, BLOCK_BITS, BLOCK_PIXELS, Block, TILE_BITS, blocks, children, within};
+use super::layout::{BLOCK, BLOCK_BITS, BLOCK_PIXELS, Block, within};
 use super::sink::{Id, Rows, Sink};
-use crate::geom::PixelRect;
 
 /// Nearness of every pixel, block by block. What lies beyond the viewport is infinitely near, so
 /// that it hides nothing and is never drawn on.
@@ -174,25 +173,14 @@ impl Sink for DepthSink<'_> {
     }
 
     #[inline(always)]
-    fn hides<I: Isa>(&mut self, rect: &PixelRect, nearest: f32) -> bool {
-        let nearest = I::splat_f(nearest);
-        let (mut hidden, rows) = (true, self.rows);
-        each_block(
-            &rows,
-            rect,
-            #[inline(always)]
-            |block, tiles| {
-                // Nothing nearer than what is there: the greatest nearness stays as it is.
-                let mut open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
-                if open != 0 && self.base.stale[block] & !STALE >= REFRESH_CALL {
-                    self.refresh::<I>(block);
-                    open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
-                }
-                hidden = open == 0;
-                hidden
-            },
-        );
-        hidden
+    fn hides_tiles<I: Isa>(&mut self, block: usize, tiles: Mask, nearest: I::F) -> bool {
+        // Nothing nearer than what is there: the greatest nearness stays as it is.
+        let mut open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
+        if open != 0 && self.base.stale[block] & !STALE >= REFRESH_CALL {
+            self.refresh::<I>(block);
+            open = tiles & I::gt_f(nearest, I::load_f(&self.base.farthest[block]));
+        }
+        open == 0
     }
 
     #[inline(always)]
@@ -238,26 +226,6 @@ fn clear(blocks: &mut [Block], rows: &Rows, cleared: f32) {
                     let (tile, lane) = within(x as u32, y as u32);
                     block.0[tile][lane] = f32::INFINITY;
                 }
-            }
-        }
-    }
-}
-
-/// Calls `f` with the blocks of a band that some of its pixels lie in, and the tiles of each, until
-/// it says false.
-#[inline(always)]
-pub(crate) fn each_block(rows: &Rows, rect: &PixelRect, mut f: impl FnMut(usize, Mask) -> bool) {
-    let (first, last) = blocks(rect);
-    let tile = |pixel: u32, block: u32| (pixel as i32 >> TILE_BITS) - (block << TILE_BITS) as i32;
-    for by in first[1]..=last[1] {
-        for bx in first[0]..=last[0] {
-            let tiles = children(
-                [tile(rect.x0, bx), tile(rect.y0, by)],
-                [tile(rect.x1 - 1, bx), tile(rect.y1 - 1, by)],
-            );
-            let block = rows.block((bx << BLOCK_BITS) as i32, (by << BLOCK_BITS) as i32);
-            if !f(block, tiles) {
-                return;
             }
         }
     }

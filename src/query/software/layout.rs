@@ -54,3 +54,9 @@ pub(crate) fn blocks(rect: &PixelRect) -> ([u32; 2], [u32; 2]) {
     let first = [rect.x0, rect.y0].map(|v| v >> BLOCK_BITS);
     (first, [rect.x1, rect.y1].map(|v| (v - 1) >> BLOCK_BITS))
 }
+
+/// The tile of a block that a pixel lies in, by column or row; beyond the block, beyond its tiles.
+#[inline(always)]
+pub(crate) fn tile_of(pixel: i32, block: i32) -> i32 {
+    (pixel - (block << BLOCK_BITS)) >> TILE_BITS
+}

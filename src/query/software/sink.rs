@@ -1,7 +1,7 @@
 //! Where samples go.
 
 use super::isa::{Isa, Mask};
-use super::layout::BLOCK;
+use super::layout::{BLOCK, BLOCK_BITS, blocks, children, tile_of};
 use crate::geom::PixelRect;
 
 /// A band of rows of blocks that takes samples. Blocks are counted from the band's first.
@@ -16,7 +16,27 @@ pub(crate) trait Sink {
     fn rows(&self) -> Rows;
 
     /// Whether nothing of `nearest` or farther changes anything in some pixels of the band.
-    fn hides<I: Isa>(&mut self, rect: &PixelRect, nearest: f32) -> bool;
+    #[inline(always)]
+    fn hides<I: Isa>(&mut self, rect: &PixelRect, nearest: f32) -> bool {
+        let (nearest, rows) = (I::splat_f(nearest), self.rows());
+        let (first, last) = blocks(rect);
+        for by in first[1]..=last[1] {
+            for bx in first[0]..=last[0] {
+                let tiles = children(
+                    [tile_of(rect.x0 as i32, bx as i32), tile_of(rect.y0 as i32, by as i32)],
+                    [tile_of(rect.x1 as i32 - 1, bx as i32), tile_of(rect.y1 as i32 - 1, by as i32)],
+                );
+                let block = rows.block((bx << BLOCK_BITS) as i32, (by << BLOCK_BITS) as i32);
+                if !self.hides_tiles::<I>(block, tiles, nearest) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// The same for some tiles of a block.
+    fn hides_tiles<I: Isa>(&mut self, block: usize, tiles: Mask, nearest: I::F) -> bool;
 
     /// The tiles of a block in which a nearness up to `greatest` can change something.
     fn open_tiles<I: Isa>(&mut self, block: usize, greatest: I::F) -> Mask;

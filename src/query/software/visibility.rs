@@ -3,12 +3,11 @@
 //! bits, a sample is in sight exactly if its nearness is not below the stored one.
 
 use super::SoftwareQueries;
-use super::depth::each_block;
 use super::isa::{Isa, LANES, Mask};
 use super::layout::{BLOCK_BITS, BLOCK_PIXELS, Block, within};
 use super::pass::DrawCall;
 use super::sink::{Id, Rows, Sink};
-use crate::geom::{PixelRect, View};
+use crate::geom::View;
 
 /// What each pixel shows, row after row from the upper left corner.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -139,19 +138,8 @@ impl Sink for VisibilitySink<'_> {
     }
 
     #[inline(always)]
-    fn hides<I: Isa>(&mut self, rect: &PixelRect, nearest: f32) -> bool {
-        let nearest = I::splat_f(nearest);
-        let (mut hidden, rows) = (true, self.rows);
-        each_block(
-            &rows,
-            rect,
-            #[inline(always)]
-            |block, tiles| {
-                hidden = tiles & self.open_tiles::<I>(block, nearest) == 0;
-                hidden
-            },
-        );
-        hidden
+    fn hides_tiles<I: Isa>(&mut self, block: usize, tiles: Mask, nearest: I::F) -> bool {
+        tiles & self.open_tiles::<I>(block, nearest) == 0
     }
 
     /// Those where not everything is nearer. What is equally far counts as seen.

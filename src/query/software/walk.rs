@@ -2,7 +2,7 @@
 //! hide it, of each of those the pixels.
 
 use super::isa::{ALL, Isa, LANES, of_lane, store_each};
-use super::layout::{BLOCK_BITS, LANE_X, LANE_Y, TILE, TILE_BITS, children};
+use super::layout::{BLOCK_BITS, LANE_X, LANE_Y, TILE, TILE_BITS, children, tile_of};
 use super::setup::{Setup, Shading};
 use super::sink::{Id, Sink};
 
@@ -96,10 +96,4 @@ impl Stored {
             block_row += rows.blocks;
         }
     }
-}
-
-/// The tile of a block that a pixel lies in, by column or row; beyond the block, beyond its tiles.
-#[inline(always)]
-fn tile_of(pixel: i32, block: i32) -> i32 {
-    (pixel - (block << BLOCK_BITS)) >> TILE_BITS
 }

@@ -5,24 +5,6 @@ use glam::Vec3;
 use super::super::shape::{Coarseness, Shape, Stand, mesh};
 use crate::scene::mesh::Mesh;
 
-/// Declares the parts once: the variants, and the list of them in order of their mesh index.
-macro_rules! parts {
-    ($($name:ident => $mesh:expr,)*) => {
-        /// A shared mesh; `as usize` is its index in the model.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub(super) enum Part { $($name),* }
-
-        impl Part {
-            pub(super) const ALL: &[Self] = &[$(Self::$name),*];
-
-            /// Builds the part's mesh.
-            pub(super) fn mesh(self) -> Mesh {
-                match self { $(Self::$name => $mesh),* }
-            }
-        }
-    };
-}
-
 parts! {
     // One metre each way, standing on the ground, about the y axis.
     Body => whole("body", |s, _| s.cuboid(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.0, 0.5))),

@@ -4,24 +4,6 @@ use super::super::dice::Dice;
 use super::{BAY, CLEAR, parts, pipework, structure};
 use crate::scene::mesh::Mesh;
 
-/// Declares the parts once: the variants, and the list of them in order of their mesh index.
-macro_rules! parts {
-    ($($name:ident => $mesh:expr,)*) => {
-        /// A shared mesh; `as usize` is its index in the model.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub(super) enum Part { $($name),* }
-
-        impl Part {
-            pub(super) const ALL: &[Self] = &[$(Self::$name),*];
-
-            /// Builds the part's mesh.
-            pub(super) fn mesh(self) -> Mesh {
-                match self { $(Self::$name => $mesh),* }
-            }
-        }
-    };
-}
-
 parts! {
     Slab => structure::slab(),
     Ground => structure::ground(),
