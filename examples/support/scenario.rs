@@ -30,6 +30,15 @@ pub enum Flight {
     Path(CameraPath),
     /// Frame by frame; never empty.
     Poses(Vec<Pose>),
+    /// A part of another.
+    Part {
+        /// The whole.
+        of: Box<Flight>,
+        /// Its time at the start.
+        from: f32,
+        /// Its time at the end.
+        to: f32,
+    },
 }
 
 impl Flight {
@@ -38,6 +47,7 @@ impl Flight {
         match self {
             Self::Path(path) => path.pose(t),
             Self::Poses(poses) => poses[(t * (poses.len() - 1) as f32).round() as usize],
+            Self::Part { of, from, to } => of.pose(from + (to - from) * t),
         }
     }
 }
@@ -86,6 +96,12 @@ impl Scenario {
         let path = if fast { city::fast_path(flags.scale) } else { city::path(flags.scale) };
         let name = if fast { "city, at a run" } else { "city" };
         Self { name: name.to_owned(), world, swarm: None, flight: Flight::Path(path), near: NEAR }
+    }
+
+    /// The same world with a part of the flight: from one of its times to another, 0 to 1 each.
+    pub fn part(mut self, from: f32, to: f32) -> Self {
+        self.flight = Flight::Part { of: Box::new(self.flight), from, to };
+        self
     }
 
     /// Moves what moves on by a frame.
