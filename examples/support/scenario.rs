@@ -127,3 +127,19 @@ impl Scenario {
 fn several(count: usize, moving: bool, one: &str, many: &str) -> String {
     format!("{count} {} {}", if moving { "moving" } else { "static" }, if count == 1 { one } else { many })
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_flight_is_flown_from_its_start_to_its_end() {
+        let eyes =
+            (0..=8).map(|n| Pose { eye: Vec3::X * n as f32, target: Vec3::NEG_Z, fov_y_degrees: 60.0 });
+        let whole = Flight::Poses(eyes.collect());
+        let part = Flight::Part { of: Box::new(whole), from: 0.25, to: 0.75 };
+        assert_eq!([0.0, 0.5, 1.0].map(|t| part.pose(t).eye.x), [2.0, 4.0, 6.0]);
+    }
+}
