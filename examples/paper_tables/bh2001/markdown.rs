@@ -35,9 +35,11 @@ visible there or in part. The paper's best are 0.5 and 0.6. What was hidden is a
 const NOTES: &str = "\
 - Trees: cells halved along their longest side, questions about cells. In the binary tree straddlers stay in \
 inner nodes; in the ternary tree they are a third child, so that opened nodes, which B does not ask about, \
-are at most a third of those visited.
-- The plant stands in for the paper's buildings, the city for its town. Few of their cells are hidden as a \
-whole, so propagation, which needs such cells to prove anything, adds little to B.
+are at most a third of those visited. Of those asked about they can be more: nobody asks about a child \
+without objects.
+- The paper's scenes are not ours: its first figure stands beside the plant, its second beside the city. \
+Few cells of ours are hidden as a whole, so propagation, which needs such cells to prove anything, adds \
+little to B.
 - Times are those of this machine, which draws and answers on the CPU. Counts do not depend on it.
 ";
 

@@ -50,9 +50,9 @@ something visible and were asked again node by node. *Wrongly culled* is the tot
 const NOTES: &str = "\
 - VFC is view-frustum culling; B are batches, R is randomised sampling, TB tight bounding volumes, MQ \
 multiqueries, each with all before it.
-- Times are those of this machine, which draws and answers on the CPU: a change of state costs little \
-there, and next to nothing is gained by filling waits. The paper's figures come from a GPU; questions and \
-state changes compare, times much less.
+- Times are those of this machine, which draws and answers on the CPU, where answers come at once and \
+there is little waiting to be filled. The paper's figures come from a GPU; questions and state changes \
+compare, times much less.
 - OPT's set is found outside the clock, just before its frame and on its tree, which is then warm in the \
 caches.
 - The paper's scenes are Vienna, Pompeii and a power plant. Shader complexity (the paper draws with up to \
