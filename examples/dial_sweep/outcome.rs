@@ -34,10 +34,9 @@ impl Outcome {
         if drawn(0) > 0.0 { drawn(tree) / drawn(0) } else { 1.0 }
     }
 
-    /// A tree's time over the base's: the median of the ratios frame by frame. Frames differ more
-    /// than trees do, and both had the same ones.
+    /// A tree's time over the base's: the median of the ratios frame by frame.
     pub fn time_of_base(&self, tree: usize) -> f64 {
-        median_ratio(&self.lanes[tree], self.base_ms.iter().copied())
+        self.lanes[tree].time_over(self.base_ms.iter().copied())
     }
 
     /// Objects wrongly culled in any frame by any tree, if the oracle looked.
@@ -52,7 +51,7 @@ impl Outcome {
 
     /// By how much the base's copies differ in time, over the least.
     pub fn time_noise(&self) -> f64 {
-        self.noise(|a, b| median_ratio(a, b.frames.iter().map(|frame| frame.frame_ms)))
+        self.noise(|a, b| a.time_over(b.times()))
     }
 
     /// The greatest ratio of two copies, less 1.
@@ -61,11 +60,4 @@ impl Outcome {
         let ratios = copies.iter().flat_map(|a| copies.iter().map(|b| ratio(a, b)));
         ratios.fold(1.0, f64::max) - 1.0
     }
-}
-
-/// The median over the frames of a lane's time over another time.
-fn median_ratio(lane: &Measured, others: impl Iterator<Item = f64>) -> f64 {
-    let ratios: Vec<f64> =
-        lane.frames.iter().zip(others).map(|(frame, other)| frame.frame_ms / other).collect();
-    percentile(&ratios, 50.0)
 }

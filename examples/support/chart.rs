@@ -1,21 +1,86 @@
 //! Charts over the frames of a run.
 
+use std::ops::Range;
+
 use plotters::chart::MeshStyle;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::canvas::{FAINT, GRID, INK, Sheet, px, text};
+use super::report::percentile;
 
 /// Curves over frames.
 pub type Chart<'a, Y> = ChartContext<'a, BitMapBackend<'a>, Cartesian2d<RangedCoordf64, Y>>;
 
+/// A figure of each frame.
+pub struct Curve {
+    /// Frame by frame.
+    pub values: Vec<f64>,
+    /// Its colour.
+    pub color: RGBColor,
+    /// Of the line, pixels.
+    pub width: i32,
+}
+
+/// Draws curves, the later ones over the earlier; outside a range they run along its border.
+pub fn draw<Y>(chart: &mut Chart<'_, Y>, range: Range<f64>, curves: &[Curve]) -> anyhow::Result<()>
+where
+    Y: Ranged<ValueType = f64>,
+{
+    for Curve { values, color, width } in curves {
+        let points = values.iter().enumerate().map(|(i, y)| (i as f64, y.clamp(range.start, range.end)));
+        chart.draw_series(LineSeries::new(points, color.stroke_width(px(*width) as u32)))?;
+    }
+    Ok(())
+}
+
+/// Where an axis for curves ends. A single slow frame (the first one builds the tree) must not
+/// flatten all the others.
+pub fn top(curves: &[Curve]) -> f64 {
+    let high = |curve: &Curve| if curve.values.is_empty() { 0.0 } else { percentile(&curve.values, 97.0) };
+    nice_top(1.1 * curves.iter().map(high).fold(0.0, f64::max))
+}
+
+/// The same for both ends of a logarithmic axis. Zeros are left out: they run along its border.
+pub fn log_range(curves: &[Curve]) -> Range<f64> {
+    let values: Vec<f64> = curves.iter().flat_map(|c| &c.values).copied().filter(|&y| y > 0.0).collect();
+    let low = if values.is_empty() { 1.0 } else { percentile(&values, 1.0) };
+    let bottom = 10f64.powf(low.log10().floor());
+    bottom..top(curves).max(10.0 * bottom)
+}
+
 /// Axes on which curves over `frames` frames are drawn.
-pub fn axes<'a, Y>(
+pub fn axes<'a>(
+    area: &Sheet<'a>,
+    frames: usize,
+    range: Range<f64>,
+    unit: &str,
+) -> anyhow::Result<Chart<'a, RangedCoordf64>> {
+    labelled_axes(area, frames, range, unit, decimals)
+}
+
+/// The same with a logarithmic range, from a number above 0.
+pub fn log_axes<'a>(
+    area: &Sheet<'a>,
+    frames: usize,
+    range: Range<f64>,
+    unit: &str,
+) -> anyhow::Result<Chart<'a, LogCoord<f64>>> {
+    // All nine labels of a decade would lie over each other.
+    let sparse = |y: &f64| {
+        let digit = (y / 10f64.powf((y.log10() + 1e-9).floor())).round();
+        if [1.0, 2.0, 5.0].contains(&digit) { decimals(y) } else { String::new() }
+    };
+    labelled_axes(area, frames, range.log_scale(), unit, sparse)
+}
+
+fn labelled_axes<'a, Y>(
     area: &Sheet<'a>,
     frames: usize,
     range: impl AsRangedCoord<CoordDescType = Y, Value = f64>,
     unit: &str,
+    label: impl Fn(&f64) -> String,
 ) -> anyhow::Result<Chart<'a, Y>>
 where
     Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
@@ -32,7 +97,7 @@ where
         .x_desc("frame")
         .y_desc(unit)
         .x_label_formatter(&whole)
-        .y_label_formatter(&|y| format!("{}", (y * 1e6).round() / 1e6))
+        .y_label_formatter(&label)
         .draw()?;
     Ok(chart)
 }
@@ -68,6 +133,11 @@ pub fn nice_top(x: f64) -> f64 {
 pub fn panel<'a>(area: &Sheet<'a>, title: &str) -> anyhow::Result<Sheet<'a>> {
     area.draw_text(title, &text(16, INK), (px(26), px(4)))?;
     Ok(area.split_vertically(px(26)).1)
+}
+
+/// As many decimals as there are.
+fn decimals(y: &f64) -> String {
+    format!("{}", (y * 1e6).round() / 1e6)
 }
 
 /// The number of a frame; ticks between two frames have none.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, ValueEnum};
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
@@ -79,6 +80,10 @@ pub struct Flags {
     /// The example's name.
     #[arg(skip)]
     pub example: &'static str,
+
+    /// Whether the command line names a scale.
+    #[arg(skip)]
+    pub has_scale: bool,
 }
 
 /// An example without flags of its own.
@@ -116,6 +121,7 @@ impl Flags {
         let more = More::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         flags.example = program.name;
         flags.full_detail |= program.full_detail;
+        flags.has_scale = matches.value_source("scale") == Some(ValueSource::CommandLine);
         if let Err(error) = program.check(&matches).and_then(|()| flags.check()) {
             command.clone().error(ErrorKind::InvalidValue, error).exit();
         }
@@ -134,11 +140,21 @@ impl Flags {
 
     /// The tree's dials.
     pub fn tree(&self) -> anyhow::Result<TreeConfig> {
-        let mut tree = TreeConfig::default();
+        self.tree_from(TreeConfig::default())
+    }
+
+    /// The same, with other defaults.
+    pub fn tree_from(&self, mut tree: TreeConfig) -> anyhow::Result<TreeConfig> {
         for (key, value) in self.dials.iter().filter(|(key, _)| is_tree_dial(key)) {
             tree.set(key, value)?;
         }
         Ok(tree)
+    }
+
+    /// The same flags with another default for the scale.
+    pub fn with_default_scale(&self, default: f32) -> Self {
+        let scale = if self.has_scale { self.scale } else { default };
+        Self { scale, ..self.clone() }
     }
 
     /// How finely meshes are drawn.

@@ -2,9 +2,21 @@
 
 use std::fmt::Write;
 
+use super::flags::Flags;
+
 /// What was typed to run this program, as it can be typed anywhere: without this machine's paths.
 pub fn command(example: &str) -> String {
     command_of(example, std::env::args().skip(1))
+}
+
+/// How everything was drawn.
+pub fn setting(flags: &Flags) -> anyhow::Result<String> {
+    let (width, height) = flags.size;
+    let detail = match flags.detail()?.max_error_px {
+        0.0 => "every mesh with all its triangles".to_owned(),
+        pixels => format!("levels of detail within {pixels} pixels"),
+    };
+    Ok(format!("{width} × {height}, {detail}, on the software backend"))
 }
 
 /// A table: a header, and rows of as many cells.

@@ -5,7 +5,7 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use super::canvas::{self, FAINT, INK, Key, px, text};
-use super::chart::{axes, nice_top};
+use super::chart::{axes, log_axes, nice_top};
 use super::report::{FrameRecord, Summary, percentile};
 
 const SIZE: (u32, u32) = (1200, 620);
@@ -99,8 +99,8 @@ fn drawn_objects(path: &Path, summary: &Summary, frames: &[FrameRecord]) -> anyh
         // the lower plot shows ratios.
         let (upper, lower) = area.split_vertically(px(390));
         let mut linear = axes(&upper, frames.len(), 0.0..top, "objects")?;
-        let mut ratios =
-            axes(&lower, frames.len(), (bottom..top.max(2.0 * bottom)).log_scale(), "objects, logarithmic")?;
+        let range = bottom..top.max(2.0 * bottom);
+        let mut ratios = log_axes(&lower, frames.len(), range, "objects, logarithmic")?;
         for (_, color, width, value) in &known {
             let style = color.stroke_width(px(1) as u32 * width);
             let points: Vec<_> =

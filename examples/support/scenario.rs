@@ -30,6 +30,15 @@ pub enum Flight {
     Path(CameraPath),
     /// Frame by frame; never empty.
     Poses(Vec<Pose>),
+    /// A part of another.
+    Part {
+        /// The whole.
+        of: Box<Flight>,
+        /// Its time at the start.
+        from: f32,
+        /// Its time at the end.
+        to: f32,
+    },
 }
 
 impl Flight {
@@ -38,6 +47,7 @@ impl Flight {
         match self {
             Self::Path(path) => path.pose(t),
             Self::Poses(poses) => poses[(t * (poses.len() - 1) as f32).round() as usize],
+            Self::Part { of, from, to } => of.pose(from + (to - from) * t),
         }
     }
 }
@@ -88,6 +98,12 @@ impl Scenario {
         Self { name: name.to_owned(), world, swarm: None, flight: Flight::Path(path), near: NEAR }
     }
 
+    /// The same world with a part of the flight: from one of its times to another, 0 to 1 each.
+    pub fn part(mut self, from: f32, to: f32) -> Self {
+        self.flight = Flight::Part { of: Box::new(self.flight), from, to };
+        self
+    }
+
     /// Moves what moves on by a frame.
     pub fn step(&mut self) {
         if let Some(swarm) = &self.swarm {
@@ -110,4 +126,20 @@ impl Scenario {
 /// "1 static teapot", "12 moving teapots".
 fn several(count: usize, moving: bool, one: &str, many: &str) -> String {
     format!("{count} {} {}", if moving { "moving" } else { "static" }, if count == 1 { one } else { many })
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_flight_is_flown_from_its_start_to_its_end() {
+        let eyes =
+            (0..=8).map(|n| Pose { eye: Vec3::X * n as f32, target: Vec3::NEG_Z, fov_y_degrees: 60.0 });
+        let whole = Flight::Poses(eyes.collect());
+        let part = Flight::Part { of: Box::new(whole), from: 0.25, to: 0.75 };
+        assert_eq!([0.0, 0.5, 1.0].map(|t| part.pose(t).eye.x), [2.0, 4.0, 6.0]);
+    }
 }

@@ -8,11 +8,12 @@ use plotters::prelude::*;
 use super::Outcome;
 use super::rows::seconds;
 use super::scenes::Published;
+use crate::output::Output;
 use crate::support::canvas::{self, FAINT, GRID, INK, Key, Sheet, px, text};
-use crate::support::chart::{axes, nice_top, panel, plain};
+use crate::support::chart::{self, Curve, axes, nice_top, panel, plain};
 use crate::support::flags::Flags;
 use crate::support::lockstep::Measured;
-use crate::support::report::{FrameRecord, percentile};
+use crate::support::report::FrameRecord;
 
 const SIZE: (u32, u32) = (1400, 1180);
 /// Panels side by side, and one below the other.
@@ -73,10 +74,10 @@ const DRAWN: Figure = Figure {
     ],
 };
 
-/// Draws both figures into a folder that exists.
-pub fn write(out: &Path, flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<()> {
-    FRAME_TIME.save(&out.join("kt2005_frame_time.png"), flags, outcomes)?;
-    DRAWN.save(&out.join("kt2005_drawn.png"), flags, outcomes)
+/// Draws both figures.
+pub fn write(output: &Output, flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<()> {
+    FRAME_TIME.save(&output.file("_frame_time.png"), flags, outcomes)?;
+    DRAWN.save(&output.file("_drawn.png"), flags, outcomes)
 }
 
 impl Figure {
@@ -111,23 +112,19 @@ impl Figure {
         let Outcome { name, new, old, .. } = outcome;
         let totals = (self.words)((self.total)(new), (self.total)(old));
         let area = panel(cell, &format!("{name}: {totals}"))?;
-        // A single slow frame (the first one builds the tree) must not flatten all the others.
-        let values = |measured: &Measured| measured.frames.iter().map(self.value).collect::<Vec<_>>();
-        let top =
-            [new, old].map(|measured| percentile(&values(measured), 97.0)).into_iter().fold(0.0, f64::max);
-        let top = nice_top(1.1 * top);
-        let mut chart = axes(&area, new.frames.len(), 0.0..top, self.unit)?;
-        let mut draw = |points: &mut dyn Iterator<Item = f64>, color: RGBColor, width: i32| {
-            let clipped = points.enumerate().map(|(i, y)| (i as f64, y.min(top)));
-            chart.draw_series(LineSeries::new(clipped, color.stroke_width(px(width) as u32))).map(|_| ())
+        let floor = |floor: &Floor| {
+            let values = new.frames.iter().filter_map(floor.value).map(f64::from).collect();
+            Curve { values, color: floor.color, width: 1 }
         };
-        for floor in self.floors {
-            let mut points = new.frames.iter().filter_map(floor.value).map(f64::from);
-            draw(&mut points, floor.color, 1)?;
-        }
-        draw(&mut values(old).into_iter(), OLD, 2)?;
-        draw(&mut values(new).into_iter(), NEW, 2)?;
-        Ok(())
+        let curve = |measured: &Measured, color| {
+            let values = measured.frames.iter().map(self.value).collect();
+            Curve { values, color, width: 2 }
+        };
+        let mut curves: Vec<Curve> = self.floors.iter().map(floor).collect();
+        curves.extend([curve(old, OLD), curve(new, NEW)]);
+        let range = 0.0..chart::top(&curves);
+        let mut chart = axes(&area, new.frames.len(), range.clone(), self.unit)?;
+        chart::draw(&mut chart, range, &curves)
     }
 
     /// New over old in all scenes, beside the paper's.

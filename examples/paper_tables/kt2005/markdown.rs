@@ -7,7 +7,7 @@ use super::rows::{self, seconds};
 use super::scenes::Published;
 use crate::support::flags::Flags;
 use crate::support::lockstep::Measured;
-use crate::support::markdown::{command, known, percent, ratio, table};
+use crate::support::markdown::{command, known, percent, ratio, setting, table};
 use crate::support::table::count;
 
 /// The whole page.
@@ -28,12 +28,6 @@ first frame included. *Drawn* and *queries* are means a frame. *Ratio* is new ov
 algorithm needs less. The last column of each group is the paper's ratio.";
 
 fn introduction(flags: &Flags) -> anyhow::Result<String> {
-    let (width, height) = flags.size;
-    let detail = flags.detail()?.max_error_px;
-    let detail = match detail {
-        0.0 => "every mesh with all its triangles".to_owned(),
-        pixels => format!("levels of detail within {pixels} pixels"),
-    };
     let size = if flags.scale == 1.0 && flags.objects == 2500 {
         String::new()
     } else {
@@ -45,10 +39,11 @@ fn introduction(flags: &Flags) -> anyhow::Result<String> {
     Ok(format!(
         "`{}`\n\n{size}The *new* algorithm (dual queries on a ternary tree, which the answers shape) against \
          the *old* one (statistically optimised queries on a binary tree) over {} frames a scene, \
-         {width} × {height}, {detail}, on the software backend. Both fly through the same world at the same \
+         {}. Both fly through the same world at the same \
          time, frame by frame, and take turns in going first.",
         command("paper_tables"),
-        flags.frames
+        flags.frames,
+        setting(flags)?
     ))
 }
 

@@ -11,15 +11,14 @@ mod markdown;
 mod rows;
 mod scenes;
 
-use std::fs;
-
 use anyhow::Context;
-use indicatif::{ProgressBar, ProgressStyle};
 use tercet::policy::Statistical;
 use tercet::tree::Straddlers;
 
+use crate::frames;
+use crate::output::Output;
 use crate::support::flags::Flags;
-use crate::support::lockstep::{self, Lane, Measured};
+use crate::support::lockstep::{Lane, Measured};
 use crate::support::report::write_csv;
 use crate::support::table::count;
 use scenes::{SCENES, Scene};
@@ -36,30 +35,20 @@ pub struct Outcome {
 
 /// Runs all scenes and writes `kt2005.md`, two tables and two figures into `--out`.
 pub fn run(flags: &Flags) -> anyhow::Result<()> {
-    let out = flags.out();
-    fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
-    let style = "{bar:30} frame {pos} of {len}, {elapsed} so far, {eta} left: {msg}";
-    let bar = ProgressBar::new(2 * SCENES.len() as u64 * u64::from(flags.frames))
-        .with_style(ProgressStyle::with_template(style)?);
+    let output = Output::new(flags, "kt2005", 2 * SCENES.len() as u64 * u64::from(flags.frames))?;
     let mut outcomes = Vec::new();
     for scene in SCENES {
         let scenario = scene.build(flags)?;
         let name = scenario.name.clone();
-        bar.set_message(name.clone());
-        let [new, old] = both(lockstep::run(scenario, flags, lanes(flags)?, || bar.inc(1))?)?;
-        bar.suspend(|| println!("{}", line(&name, &new, &old)));
+        let [new, old] = both(output.run(scenario, flags, lanes(flags)?)?)?;
+        output.say(&line(&name, &new, &old));
         outcomes.push(Outcome { scene, name, new, old });
     }
-    bar.finish_and_clear();
 
-    write_csv(&out.join("kt2005.csv"), outcomes.iter().flat_map(rows::rows))?;
-    rows::write_frames(&out.join("kt2005_frames.csv"), &outcomes)?;
-    figures::write(&out, flags, &outcomes)?;
-    let text = markdown::page(flags, &outcomes)?;
-    let path = out.join("kt2005.md");
-    fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
-    println!("the table is {}; figures are beside it", path.display());
-    Ok(())
+    write_csv(&output.file(".csv"), outcomes.iter().flat_map(rows::rows))?;
+    frames::write(&output.file("_frames.csv"), outcomes.iter().flat_map(rows::runs))?;
+    figures::write(&output, flags, &outcomes)?;
+    output.finish(&markdown::page(flags, &outcomes)?)
 }
 
 /// The new algorithm and the old one.

@@ -1,14 +1,11 @@
 //! The figures as tables: a row a scene and algorithm, and a row a frame.
 
-use std::path::Path;
-
-use anyhow::Context;
 use serde::Serialize;
 
 use super::Outcome;
 use super::scenes::Published;
 use crate::support::lockstep::Measured;
-use crate::support::report::{FrameRecord, round};
+use crate::support::report::round;
 
 /// The algorithms, as the files call them.
 pub const NEW: &str = "new";
@@ -55,6 +52,12 @@ pub fn rows(outcome: &Outcome) -> [Row<'_>; 2] {
     [row(name, NEW, new, scene.new), row(name, OLD, old, scene.old)]
 }
 
+/// Both runs of a scene, with their names.
+pub fn runs(outcome: &Outcome) -> [(&str, &str, &Measured); 2] {
+    let Outcome { name, new, old, .. } = outcome;
+    [(name, NEW, new), (name, OLD, old)]
+}
+
 /// The time of the whole flight.
 pub fn seconds(measured: &Measured) -> f64 {
     round(measured.frames.iter().map(|frame| frame.frame_ms).sum::<f64>() * 1e-3)
@@ -88,27 +91,4 @@ fn row<'a>(scene: &'a str, algorithm: &'static str, measured: &'a Measured, pape
         paper_drawn: paper.drawn,
         paper_queries: paper.queries,
     }
-}
-
-/// Writes a line a frame, scene and algorithm.
-pub fn write_frames(path: &Path, outcomes: &[Outcome]) -> anyhow::Result<()> {
-    // A record inside a tuple has no header of its own, so the names are taken from a lone one.
-    let mut lone = csv::Writer::from_writer(Vec::new());
-    lone.serialize(FrameRecord::default())?;
-    let lone = lone.into_inner()?;
-    let mut names = csv::Reader::from_reader(&lone[..]);
-
-    let mut csv = csv::WriterBuilder::new()
-        .has_headers(false)
-        .from_path(path)
-        .with_context(|| format!("cannot write {}", path.display()))?;
-    csv.write_record(["scene", "algorithm"].into_iter().chain(names.headers()?))?;
-    for Outcome { name, new, old, .. } in outcomes {
-        for (algorithm, measured) in [(NEW, new), (OLD, old)] {
-            for frame in &measured.frames {
-                csv.serialize((name, algorithm, frame))?;
-            }
-        }
-    }
-    Ok(csv.flush()?)
 }
