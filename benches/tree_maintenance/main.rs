@@ -8,11 +8,10 @@
 //!
 //! `cargo bench --bench tree_maintenance [-- --quick] [-- --count N] [-- --out DIR]`
 
+#[path = "../../examples/support/axis.rs"]
+mod axis;
 #[path = "../../examples/support/canvas.rs"]
 mod canvas;
-#[path = "../../examples/support/chart.rs"]
-#[expect(dead_code, reason = "shared with the examples, which need more of it")]
-mod chart;
 mod clock;
 mod measure;
 mod plot;

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
+use crate::axis::{nice_top, plain};
 use crate::canvas::{self, FAINT, Key, px};
-use crate::chart::{nice_top, plain};
 use crate::measure::Row;
 
 const COLORS: [(f64, RGBColor); 3] =

@@ -6,8 +6,9 @@ use plotters::prelude::*;
 
 use crate::outcome::Outcome;
 use crate::plan::{Plan, Sweep};
+use crate::support::axis::plain;
 use crate::support::canvas::{self, FAINT, INK, Key, Sheet, px, text};
-use crate::support::chart::{panel, plain};
+use crate::support::chart::panel;
 use crate::support::flags::Flags;
 
 const WIDTH: u32 = 1500;

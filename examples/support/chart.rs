@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use plotters::chart::MeshStyle;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::canvas::{FAINT, GRID, INK, Sheet, px, text};
+use super::axis::{nice_top, plain};
+use super::canvas::{INK, Sheet, px, text};
 use super::report::percentile;
 
 /// Curves over frames.
@@ -100,33 +100,6 @@ where
         .y_label_formatter(&label)
         .draw()?;
     Ok(chart)
-}
-
-/// The house's style of axes and grid.
-pub fn plain<'a, 'b, 'm, X, Y>(
-    mesh: &'m mut MeshStyle<'a, 'b, X, Y, BitMapBackend<'a>>,
-) -> &'m mut MeshStyle<'a, 'b, X, Y, BitMapBackend<'a>>
-where
-    X: Ranged,
-    Y: Ranged,
-{
-    mesh.light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(px(1) as u32))
-        .axis_style(FAINT.stroke_width(px(1) as u32))
-        .label_style(text(13, FAINT))
-        .axis_desc_style(text(14, INK))
-}
-
-/// A round number to end an axis at: the least of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten
-/// that is not below `x`.
-pub fn nice_top(x: f64) -> f64 {
-    let x = x.max(1e-3);
-    let power = 10f64.powf(x.log10().floor());
-    [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0]
-        .into_iter()
-        .map(|step| step * power)
-        .find(|&top| top >= x)
-        .unwrap_or(10.0 * power)
 }
 
 /// Titles a small chart among others; returns what is left below.

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
+use super::axis::nice_top;
 use super::canvas::{self, FAINT, INK, Key, px, text};
-use super::chart::{axes, log_axes, nice_top};
+use super::chart::{axes, log_axes};
 use super::report::{FrameRecord, Summary, percentile};
 
 const SIZE: (u32, u32) = (1200, 620);

@@ -22,7 +22,7 @@ const AHEAD: usize = 4;
 const FAR: usize = 2048;
 
 /// Stale blocks from which they are shared among threads: below, waking another takes longer.
-const SHARED_FROM: usize = 1024;
+const SHARED_FROM: usize = 8192;
 
 /// Updates after which a run that moves looks whether its movers still do.
 const REVIEW: u32 = 64;
@@ -182,18 +182,19 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
     fn call(self) {
         let Self { gather, stretch, around } = self;
         let Stretch { first, stale, blocks, hulls, news } = stretch;
+        let Around { nodes, owner, known, is_far } = *around;
         for (i, &block) in stale.iter().enumerate() {
-            if around.is_far {
-                ask_ahead(around.known, blocks, first, &stale[i..]);
+            if is_far {
+                ask_ahead(known, blocks, first, &stale[i..]);
             }
             let at = block as usize - first;
-            let node = around.owner[block as usize];
+            let node = owner[block as usize];
             let n = node as usize;
-            let site = Site { cell: around.nodes.cell[n], straddled: around.nodes.straddled[n] };
-            let found = gather.renew(&mut blocks[at], around.known, &site);
+            let site = Site { cell: nodes.cell[n], straddled: nodes.straddled[n] };
+            let found = gather.renew(&mut blocks[at], known, &site);
             hulls[at] = found.hull;
             // A leaf at the root holds what there is; in an inner node, all that move are looked at.
-            let out = match (around.nodes.is_leaf(node), node) {
+            let out = match (nodes.is_leaf(node), node) {
                 (false, _) => found.moved,
                 (true, 0) => 0,
                 (true, _) => found.out,

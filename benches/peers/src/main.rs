@@ -7,6 +7,9 @@
 mod plot;
 mod trees;
 
+#[path = "../../../examples/support/axis.rs"]
+#[expect(dead_code, reason = "shared with the examples, which need more of it")]
+mod axis;
 #[path = "../../../examples/support/canvas.rs"]
 mod canvas;
 

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
-use crate::canvas::{self, FAINT, GRID, INK, Key, px, text};
+use crate::axis::plain;
+use crate::canvas::{self, FAINT, Key, px, text};
 use crate::{NAMES, Row};
 
 const COLORS: [RGBColor; 5] = [
@@ -47,13 +48,8 @@ pub fn ratios(path: &Path, rows: &[Row]) -> anyhow::Result<()> {
             let middle = x.fract() == 0.5;
             groups.get(*x as usize).filter(|_| middle).map_or(String::new(), |group| group.0.clone())
         };
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(GRID.stroke_width(px(1) as u32))
-            .axis_style(FAINT.stroke_width(px(1) as u32))
+        plain(&mut chart.configure_mesh())
             .label_style(text(10, FAINT))
-            .axis_desc_style(text(14, INK))
             .disable_x_mesh()
             .x_labels(2 * groups.len() + 1)
             .x_label_formatter(&name)

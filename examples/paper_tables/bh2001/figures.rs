@@ -7,8 +7,9 @@ use super::points::{self, Point};
 use super::walks::{WALKS, Walk};
 use super::{SPEEDS, TREES, TreeKind};
 use crate::output::Output;
+use crate::support::axis::{nice_top, plain};
 use crate::support::canvas::{self, Key, Sheet, px};
-use crate::support::chart::{nice_top, panel, plain};
+use crate::support::chart::panel;
 use crate::support::flags::Flags;
 
 const SIZE: (u32, u32) = (1200, 820);
