@@ -18,6 +18,7 @@ mod clock;
 #[path = "../../tree_maintenance/workload.rs"]
 mod workload;
 #[path = "../../tree_maintenance/yardstick.rs"]
+#[expect(dead_code, reason = "shared with the bench of the tree, which needs more of it")]
 mod yardstick;
 
 use std::path::Path;
