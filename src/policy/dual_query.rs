@@ -22,8 +22,6 @@
 //! Conservative whatever the history: nothing is culled but by an answer of this very frame, and
 //! every occluder behind that answer was drawn in this frame.
 
-use std::collections::VecDeque;
-
 use super::front::{Front, FrontQueue};
 use super::skip::{Seen, Share, Turnover};
 use super::waves::{Waiting, Waves};
@@ -31,7 +29,7 @@ use super::{Action, Context, Extent, Fate, History, Policy, Samples, Skip};
 use crate::Error;
 use crate::dial::{self, Dial};
 use crate::geom::{PlaneMask, Proxy, Question};
-use crate::query::{Answer, Ticket, Wait, Want};
+use crate::query::{Answer, Ticket};
 use crate::tree::{NodeId, Votes};
 
 /// What leaves that were visible in the last frame wait for.
@@ -64,8 +62,6 @@ pub struct DualQuery {
     unasked: Vec<Front>,
     stage: Stage,
     waves: u32,
-    /// Actions decided on, in order.
-    out: VecDeque<Step>,
     /// Inner nodes opened in this frame, parents first.
     opened: Vec<NodeId>,
     votes: Votes,
@@ -78,13 +74,6 @@ enum Stage {
     Drawing,
     /// The last wave only counts.
     Counting,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Step {
-    Draw(NodeId, Extent),
-    Ask(usize),
-    Wait,
 }
 
 impl Default for DualQuery {
@@ -100,7 +89,6 @@ impl Default for DualQuery {
             unasked: Vec::new(),
             stage: Stage::Drawing,
             waves: 0,
-            out: VecDeque::new(),
             opened: Vec::new(),
             votes: Votes::default(),
         }
@@ -123,7 +111,6 @@ impl Policy for DualQuery {
         self.questions.begin(cx.view.viewport());
         self.unasked.clear();
         self.stage = Stage::Drawing;
-        self.out.clear();
         self.opened.clear();
         self.votes.votes.clear();
         self.votes.forward = cx.view.forward();
@@ -132,24 +119,16 @@ impl Policy for DualQuery {
     }
 
     fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
-        if self.out.is_empty() {
+        if self.questions.is_idle() {
             self.fill_wave(cx);
-            if self.out.is_empty() && self.stage == Stage::Drawing {
+            if self.questions.is_idle() && self.stage == Stage::Drawing {
                 self.count_unasked(cx);
             }
         }
-        match self.out.pop_front() {
-            Some(Step::Draw(node, extent)) => Action::Draw(node, extent),
-            Some(Step::Ask(i)) => {
-                let boxes = std::slice::from_ref(self.questions.proxy(i));
-                Action::Ask { ticket: Ticket(i as u32), boxes, want: Want::Dual }
-            }
-            Some(Step::Wait) => Action::Wait(Wait::Block),
-            None => {
-                self.pull_up(cx);
-                Action::Done
-            }
+        if self.questions.is_idle() {
+            self.pull_up(cx);
         }
+        self.questions.action()
     }
 
     fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
@@ -231,15 +210,7 @@ impl DualQuery {
             self.questions.add(question, self.waves < self.max_waves);
         }
         self.waves += 1;
-        self.ask_wave();
-    }
-
-    /// After all draws: one flush a wave, and the most is in the depth buffer when it asks.
-    fn ask_wave(&mut self) {
-        if self.questions.len() > 0 {
-            self.out.extend((0..self.questions.len()).map(Step::Ask));
-            self.out.push_back(Step::Wait);
-        }
+        self.questions.close();
     }
 
     /// Asks about the leaves that were drawn without an answer, against the finished depth.
@@ -256,7 +227,7 @@ impl DualQuery {
                 }
             }
         }
-        self.ask_wave();
+        self.questions.close();
     }
 
     /// An inner node that was visible, or is new, is opened unasked; a leaf that was visible is
@@ -335,7 +306,7 @@ impl DualQuery {
         let state = self.history.entry(node);
         (state.frame, state.visible) = (cx.frame, true);
         if cx.tree.own_count(node) > 0 {
-            self.out.push_back(Step::Draw(node, Extent::Own));
+            self.questions.draw(node, Extent::Own);
         }
         if let Some(children) = cx.tree.children(node) {
             self.opened.push(node);

@@ -1,10 +1,14 @@
 //! Waves of questions: what may be asked together, and what is held back for a later wave (see
 //! [`order`](super::order)).
 
-use super::ScreenTiles;
+use std::collections::VecDeque;
+
 use super::front::Front;
 use super::order::TileRect;
+use super::{Action, Extent, ScreenTiles, Ticket};
 use crate::geom::{Proxy, Viewport};
+use crate::query::{Wait, Want};
+use crate::tree::NodeId;
 
 /// A node with its question, until the question may be asked. Small, since those that are held
 /// back are looked at again in each wave.
@@ -18,7 +22,7 @@ pub(super) struct Waiting {
     expected_hidden: bool,
 }
 
-/// The questions of a frame, wave by wave.
+/// The questions of a frame, wave by wave, and the draws between them.
 #[derive(Clone, Debug)]
 pub(super) struct Waves {
     tiles: ScreenTiles,
@@ -31,6 +35,15 @@ pub(super) struct Waves {
     held_again: Vec<Waiting>,
     /// Proxies of the frame, so that a node held back is not projected again.
     proxies: Vec<Proxy>,
+    /// Actions decided on, in order.
+    out: VecDeque<Step>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    Draw(NodeId, Extent),
+    Ask(usize),
+    Wait,
 }
 
 impl Default for Waves {
@@ -42,6 +55,7 @@ impl Default for Waves {
             turns: 0,
             held_again: Vec::new(),
             proxies: Vec::new(),
+            out: VecDeque::new(),
         }
     }
 }
@@ -51,6 +65,7 @@ impl Waves {
     pub(super) fn begin(&mut self, viewport: Viewport) {
         self.tiles = ScreenTiles::new(viewport);
         self.proxies.clear();
+        self.out.clear();
         self.held_again.clear();
         self.start();
     }
@@ -98,18 +113,40 @@ impl Waves {
         self.asked.push(question);
     }
 
-    /// How many questions are asked in this wave.
-    pub(super) fn len(&self) -> usize {
-        self.asked.len()
+    /// Draws after what has been decided on so far.
+    pub(super) fn draw(&mut self, node: NodeId, extent: Extent) {
+        self.out.push_back(Step::Draw(node, extent));
+    }
+
+    /// Ends a wave. Its questions go out after all draws: one flush a wave, and the most is in the
+    /// depth buffer when it asks.
+    pub(super) fn close(&mut self) {
+        if !self.asked.is_empty() {
+            self.out.extend((0..self.asked.len()).map(Step::Ask));
+            self.out.push_back(Step::Wait);
+        }
+    }
+
+    /// Whether everything decided on was handed out.
+    pub(super) fn is_idle(&self) -> bool {
+        self.out.is_empty()
+    }
+
+    /// The next action decided on; done if there is none.
+    pub(super) fn action(&mut self) -> Action<'_> {
+        match self.out.pop_front() {
+            Some(Step::Draw(node, extent)) => Action::Draw(node, extent),
+            Some(Step::Ask(i)) => {
+                let proxy = &self.proxies[self.asked[i].proxy as usize];
+                Action::Ask { ticket: Ticket(i as u32), boxes: std::slice::from_ref(proxy), want: Want::Dual }
+            }
+            Some(Step::Wait) => Action::Wait(Wait::Block),
+            None => Action::Done,
+        }
     }
 
     /// The node that a question of this wave is about.
     pub(super) fn node(&self, index: usize) -> Option<Front> {
         self.asked.get(index).map(|question| question.front)
-    }
-
-    /// What a question of this wave asks about.
-    pub(super) fn proxy(&self, index: usize) -> &Proxy {
-        &self.proxies[self.asked[index].proxy as usize]
     }
 }

@@ -96,9 +96,7 @@ impl Meshlets {
             count: usize::from(part.triangles),
         }
     }
-}
 
-impl Meshlets {
     /// Stores the box of the part to come.
     fn note_box(&mut self, bounds: &Aabb) {
         let lane = self.parts.len() % REGISTER;

@@ -44,8 +44,6 @@
 mod record;
 mod rope;
 
-use std::collections::VecDeque;
-
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -56,7 +54,6 @@ use super::waves::{Waiting, Waves};
 use super::{Action, Answer, Context, Extent, Fate, History, Policy, Ticket};
 use crate::dial::{self, Dial};
 use crate::geom::{PlaneMask, Question, uncertainty};
-use crate::query::{Wait, Want};
 use crate::tree::NodeId;
 use crate::{Counter, Error};
 
@@ -94,18 +91,9 @@ pub struct Hierarchy {
     questions: Waves,
     /// Whether propagation is tried before a question is asked, by the number of its proxy.
     tries: Vec<bool>,
-    /// Actions decided on, in order.
-    out: VecDeque<Step>,
     /// Inner nodes opened in this frame, parents first.
     opened: Vec<NodeId>,
     counts: Counts,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Step {
-    Draw(NodeId, Extent),
-    Ask(usize),
-    Wait,
 }
 
 /// What was saved in a frame, and how.
@@ -132,7 +120,6 @@ impl Hierarchy {
             front: FrontQueue::default(),
             questions: Waves::default(),
             tries: Vec::new(),
-            out: VecDeque::new(),
             opened: Vec::new(),
             counts: Counts::default(),
         }
@@ -162,28 +149,19 @@ impl Policy for Hierarchy {
         self.front.clear();
         self.questions.begin(cx.view.viewport());
         self.tries.clear();
-        self.out.clear();
         self.opened.clear();
         self.counts = Counts::default();
         self.front.push(cx, cx.tree.root(), PlaneMask::ALL);
     }
 
     fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
-        if self.out.is_empty() {
+        if self.questions.is_idle() {
             self.fill_wave(cx);
         }
-        match self.out.pop_front() {
-            Some(Step::Draw(node, extent)) => Action::Draw(node, extent),
-            Some(Step::Ask(i)) => {
-                let boxes = std::slice::from_ref(self.questions.proxy(i));
-                Action::Ask { ticket: Ticket(i as u32), boxes, want: Want::Dual }
-            }
-            Some(Step::Wait) => Action::Wait(Wait::Block),
-            None => {
-                self.pull_up(cx);
-                Action::Done
-            }
+        if self.questions.is_idle() {
+            self.pull_up(cx);
         }
+        self.questions.action()
     }
 
     fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
@@ -276,10 +254,7 @@ impl Hierarchy {
             }
             self.questions.add(question, true);
         }
-        if self.questions.len() > 0 {
-            self.out.extend((0..self.questions.len()).map(Step::Ask));
-            self.out.push_back(Step::Wait);
-        }
+        self.questions.close();
     }
 
     /// Opens or draws a node, or returns its question.
@@ -364,7 +339,7 @@ impl Hierarchy {
     fn take_as_visible(&mut self, cx: &Context<'_>, front: Front, record: Record) {
         self.stamp_visible(cx, front.node);
         self.records.note(front.node, cx.frame, record);
-        self.out.push_back(Step::Draw(front.node, Extent::Subtree));
+        self.questions.draw(front.node, Extent::Subtree);
     }
 
     /// Draws an inner node's own objects and looks at its children. What it is as a whole is known
@@ -375,7 +350,7 @@ impl Hierarchy {
         self.records.note(front.node, cx.frame, record);
         self.opened.push(front.node);
         if cx.tree.own_count(front.node) > 0 {
-            self.out.push_back(Step::Draw(front.node, Extent::Own));
+            self.questions.draw(front.node, Extent::Own);
         }
         for child in cx.tree.children(front.node).into_iter().flatten() {
             self.front.push(cx, child, front.mask);

@@ -1,12 +1,11 @@
 //! The raster pipeline: draw calls in, samples out.
 //!
 //! The screen is cut into bands of rows, which fit an ordinary second-level cache up to a width of
-//! 4096 pixels. Each draw call is
-//! bounded once and listed in the bands that it may touch; then every band takes its calls in
-//! order, each by one thread: what is hidden by what the band holds already is left out, of large
-//! meshes part by part and from near to far; the rest is transformed, set up and sampled while it
-//! is in the first-level cache. Nothing is locked or passed on, and no result depends on who did
-//! what. All buffers are kept between frames.
+//! 4096 pixels. Each draw call is bounded once and listed in the bands that it may touch; then every
+//! band takes its calls in order, each by one thread: what is hidden by what the band holds already
+//! is left out, of large meshes part by part and from near to far; the rest is transformed, set up
+//! and sampled while it is in the first-level cache. Nothing is locked or passed on, and no result
+//! depends on who did what. All buffers are kept between frames.
 
 use rayon::prelude::*;
 
@@ -78,8 +77,6 @@ struct CallInBand {
 /// A part of a mesh that may touch a band.
 #[derive(Clone, Copy, Debug)]
 struct PartInBand {
-    /// Grows with distance.
-    order: u32,
     part: u32,
     nearest: f32,
     rect: PixelRect,
@@ -188,13 +185,13 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
         parts.clear();
         let whole = meshlets.len() == 1;
         if whole {
-            parts.push(PartInBand { order: 0, part: 0, nearest, rect });
+            parts.push(PartInBand { part: 0, nearest, rect });
         } else {
             for (register, boxes) in meshlets.boxes().iter().enumerate() {
                 let extents = extents::<I>(&footprint.clip_from_object, &frame.screen, boxes);
                 list_parts(extents, register * LANES, meshlets.len(), &rows, parts);
             }
-            parts.sort_unstable_by_key(|part| part.order);
+            parts.sort_unstable_by(|a, b| b.nearest.total_cmp(&a.nearest));
         }
         for part in parts.iter() {
             // A mesh of one part is as large as the call, and that is not hidden.
@@ -229,11 +226,7 @@ fn list_parts<I: Isa>(
     while lanes != 0 {
         let lane = lanes.trailing_zeros() as usize;
         lanes &= lanes - 1;
-        let bits = nearest[lane].to_bits();
-        // Floats in order of their bits: the negative ones turned round.
-        let ascending = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
         parts.push(PartInBand {
-            order: !ascending,
             part: (first + lane) as u32,
             nearest: nearest[lane],
             rect: PixelRect {
