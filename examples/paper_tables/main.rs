@@ -4,12 +4,15 @@
 //! cargo run --release --example paper_tables -- --table kt2005
 //! cargo run --release --example paper_tables -- --table chcpp --oracle
 //! cargo run --release --example paper_tables -- --table bh2001
+//! cargo run --release --example paper_tables -- --table hroc --oracle
 //! cargo run --release --example paper_tables -- --help
 //! ```
 
+mod algorithm;
 mod bh2001;
 mod chcpp;
 mod frames;
+mod hroc;
 mod kt2005;
 mod output;
 #[path = "../support/mod.rs"]
@@ -38,6 +41,9 @@ enum Table {
     /// Mattausch et al. 2008: CHC++ and its parts against CHC, VFC and OPT in the city; a quarter of
     /// it by default
     Chcpp,
+    /// Lee et al. 2021: raster occlusion with and without a hierarchy, in worlds after the paper's; a
+    /// quarter of each by default
+    Hroc,
 }
 
 const PROGRAM: Program = Program {
@@ -50,6 +56,7 @@ const PROGRAM: Program = Program {
             "--table chcpp --oracle",
             "CHC++ through a quarter of the city, checked against the exact visible set",
         ),
+        ("--table hroc", "raster occlusion in six worlds, against everything else that there is"),
         ("--table kt2005 --oracle", "with the exact visible set of every frame: slower, same timings"),
         ("--table kt2005 --set max_error_px=1", "with levels of detail, which the paper did not have"),
         ("--table kt2005 --scale 0.1 --objects 250 --frames 30", "a look in a minute"),
@@ -70,5 +77,6 @@ fn main() -> anyhow::Result<()> {
         Table::Kt2005 => kt2005::run(&flags),
         Table::Bh2001 => bh2001::run(&flags),
         Table::Chcpp => chcpp::run(&flags),
+        Table::Hroc => hroc::run(&flags),
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::flags::Flags;
+use super::lockstep::Measured;
 
 /// What was typed to run this program, as it can be typed anywhere: without this machine's paths.
 pub fn command(example: &str) -> String {
@@ -41,6 +42,16 @@ pub fn percent(share: f64) -> String {
 /// A figure, or a dash for one that was not measured.
 pub fn known(figure: Option<String>) -> String {
     figure.unwrap_or_else(|| "–".to_owned())
+}
+
+/// A line on what was lost in all of some runs, as far as that is known.
+pub fn lost<'a>(lanes: impl Iterator<Item = &'a Measured>) -> String {
+    match lanes.map(|lane| lane.summary.false_culls).sum::<Option<u64>>() {
+        Some(lost) => format!("- Objects wrongly culled in all runs: {lost}.\n"),
+        None => {
+            "- The visible sets are known with `--oracle`, which leaves the times as they are.\n".to_owned()
+        }
+    }
 }
 
 fn command_of(example: &str, mut arguments: impl Iterator<Item = String>) -> String {

@@ -2,7 +2,9 @@
 
 use hecs::World;
 use tercet::geom::{View, Viewport};
-use tercet::worlds::{self, CameraPath, Pose, Swarm, city, power_plant, teapots};
+use tercet::worlds::{
+    self, CameraPath, Pose, Swarm, city, factory, fantasy, power_plant, satellites, teapots,
+};
 
 use super::flags::Flags;
 
@@ -91,10 +93,32 @@ impl Scenario {
 
     /// The [`worlds::city()`], walked through, or run through with quick turns.
     pub fn city(flags: &Flags, fast: bool) -> Self {
-        let mut world = World::new();
-        worlds::city(flags.seed, flags.scale).spawn(&mut world);
         let path = if fast { city::fast_path(flags.scale) } else { city::path(flags.scale) };
         let name = if fast { "city, at a run" } else { "city" };
+        Self::still(name, &worlds::city(flags.seed, flags.scale), path)
+    }
+
+    /// The [`worlds::fantasy()`]: few objects of many triangles.
+    pub fn fantasy(flags: &Flags) -> Self {
+        let path = fantasy::path(flags.scale);
+        Self::still("fantasy", &worlds::fantasy(flags.seed, flags.scale), path)
+    }
+
+    /// The [`worlds::factory()`]: wide and detailed.
+    pub fn factory(flags: &Flags) -> Self {
+        let path = factory::path(flags.scale);
+        Self::still("factory", &worlds::factory(flags.seed, flags.scale), path)
+    }
+
+    /// The [`worlds::satellites()`]: many detailed parts.
+    pub fn satellites(flags: &Flags) -> Self {
+        let path = satellites::path(flags.scale);
+        Self::still("satellites", &worlds::satellites(flags.seed, flags.scale), path)
+    }
+
+    fn still(name: &str, model: &worlds::Model, path: CameraPath) -> Self {
+        let mut world = World::new();
+        model.spawn(&mut world);
         Self { name: name.to_owned(), world, swarm: None, flight: Flight::Path(path), near: NEAR }
     }
 

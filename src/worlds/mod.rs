@@ -25,10 +25,13 @@ macro_rules! parts {
 
 pub mod city;
 mod dice;
+pub mod factory;
+pub mod fantasy;
 mod path;
 mod pathological;
 pub mod power_plant;
 mod random;
+pub mod satellites;
 mod shape;
 mod swarm;
 mod teapot;
@@ -42,10 +45,13 @@ use crate::scene::mesh::Mesh;
 use crate::scene::{Bounds, NotOccluder};
 
 pub use city::city;
+pub use factory::factory;
+pub use fantasy::fantasy;
 pub use path::{CameraPath, Pose};
 pub use pathological::{Pathology, pathological};
 pub use power_plant::power_plant;
 pub use random::random;
+pub use satellites::satellites;
 #[cfg(feature = "gltf")]
 pub use swarm::bunny_mesh;
 pub use swarm::{Motion, Swarm};

@@ -167,6 +167,27 @@ impl Shape {
         self.lathe(stand, &profile, segments);
     }
 
+    /// A closed body without symmetry: `radius` says how far from `center` its surface is in a
+    /// direction; `segments` around the y axis and half as many from pole to pole.
+    pub(super) fn blob(&mut self, center: Vec3, segments: usize, radius: impl Fn(Vec3) -> f32) {
+        let rings = (segments / 2).max(2);
+        let mut below: Option<(u32, bool)> = None;
+        for ring in 0..=rings {
+            let (cos, sin) = turn(ring, 2 * rings);
+            let (first, tip) = (self.positions.len() as u32, ring == 0 || ring == rings);
+            let corners = if tip { 1 } else { segments };
+            self.positions.extend((0..corners).map(|k| {
+                let (u, v) = turn(k, segments);
+                let out = if tip { Vec3::Y * -cos } else { Vec3::new(sin * v, -cos, sin * u) };
+                center + out * radius(out)
+            }));
+            if let Some((lower, lower_tip)) = below {
+                self.band(lower, lower_tip, first, tip, segments as u32);
+            }
+            below = Some((first, tip));
+        }
+    }
+
     /// A ring of round section.
     pub(super) fn torus(&mut self, stand: Stand, radius: f32, section: f32, segments: [usize; 2]) {
         self.off_by(sagitta(section, segments[1]) + sagitta(radius + section, segments[0]));

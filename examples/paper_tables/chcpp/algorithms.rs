@@ -1,21 +1,8 @@
 //! What is compared.
 
 use plotters::style::RGBColor;
-use tercet::policy;
 
-use crate::support::flags::Flags;
-use crate::support::lockstep::Lane;
-
-/// A policy with its dials.
-pub struct Algorithm {
-    /// As the paper calls it.
-    pub name: &'static str,
-    /// Of its curves.
-    pub color: RGBColor,
-    policy: &'static str,
-    /// Those that are not at their defaults.
-    dials: &'static [(&'static str, &'static str)],
-}
+use crate::algorithm::Algorithm;
 
 /// Indices into [`ALGORITHMS`].
 pub const VFC: usize = 0;
@@ -54,14 +41,3 @@ pub const ALGORITHMS: [Algorithm; 8] = [
     Algorithm { name: "dual-query (ours)", color: RGBColor(150, 100, 180), policy: "dual-query", dials: &[] },
     Algorithm { name: "OPT", color: RGBColor(44, 160, 90), policy: "opt", dials: &[] },
 ];
-
-impl Algorithm {
-    /// One that has seen nothing yet.
-    pub fn lane(&self, flags: &Flags) -> anyhow::Result<Lane> {
-        let mut policy = policy::by_name(self.policy)?;
-        for (key, value) in self.dials {
-            policy.set(key, value)?;
-        }
-        Lane::new(flags, policy, flags.tree()?)
-    }
-}

@@ -6,7 +6,7 @@ use super::Outcome;
 use super::algorithms::{ALGORITHMS, OPT, VFC};
 use super::claims::{CLAIMS, Claim};
 use crate::support::flags::Flags;
-use crate::support::markdown::{command, known, setting, table};
+use crate::support::markdown::{command, known, lost, setting, table};
 use crate::support::table::count;
 
 /// The whole page.
@@ -22,7 +22,7 @@ pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {
     }
     page += "\n";
     page += NOTES;
-    page += &lost(outcomes);
+    page += &lost(outcomes.iter().flat_map(|outcome| &outcome.lanes));
     Ok(page)
 }
 
@@ -112,14 +112,4 @@ fn algorithms(outcome: &Outcome) -> String {
         ]
     });
     table(&HEADER, rows)
-}
-
-fn lost(outcomes: &[Outcome]) -> String {
-    let lanes = outcomes.iter().flat_map(|outcome| &outcome.lanes);
-    match lanes.map(|lane| lane.summary.false_culls).sum::<Option<u64>>() {
-        Some(lost) => format!("- Objects wrongly culled in all runs: {lost}.\n"),
-        None => {
-            "- The visible sets are known with `--oracle`, which leaves the times as they are.\n".to_owned()
-        }
-    }
 }

@@ -1,0 +1,30 @@
+//! What a table compares: policies by name, with their dials.
+
+use plotters::style::RGBColor;
+use tercet::policy;
+
+use crate::support::flags::Flags;
+use crate::support::lockstep::Lane;
+
+/// A policy with its dials.
+pub struct Algorithm {
+    /// As the paper calls it.
+    pub name: &'static str,
+    /// Of its curves.
+    pub color: RGBColor,
+    /// As `--policy` calls it.
+    pub policy: &'static str,
+    /// Those that are not at their defaults.
+    pub dials: &'static [(&'static str, &'static str)],
+}
+
+impl Algorithm {
+    /// One that has seen nothing yet.
+    pub fn lane(&self, flags: &Flags) -> anyhow::Result<Lane> {
+        let mut policy = policy::by_name(self.policy)?;
+        for (key, value) in self.dials {
+            policy.set(key, value)?;
+        }
+        Lane::new(flags, policy, flags.tree()?)
+    }
+}

@@ -1,0 +1,97 @@
+//! Lee et al. 2021, the comparison of hierarchical raster occlusion culling: against everything
+//! drawn, the view frustum, CHC++, raster occlusion without a hierarchy, a Hi-Z map, and the exact
+//! visible set, in worlds after the paper's four and in the moving bunnies.
+//!
+//! All run in lockstep on the software backend, each on a tree of its own with the same dials. The
+//! paper's figures are of a GPU: shares and ratios compare, milliseconds do not.
+
+mod algorithms;
+mod figures;
+mod markdown;
+mod published;
+mod rows;
+mod scenes;
+
+use crate::frames;
+use crate::output::Output;
+use crate::support::flags::Flags;
+use crate::support::lockstep::Measured;
+use crate::support::report::write_csv;
+use algorithms::{ALGORITHMS, FILTERED, REF, VFC};
+use scenes::{SCENES, Scene};
+
+/// How much of each world is built, unless the command line says otherwise.
+const SCALE: f32 = 0.25;
+
+/// A scene, measured.
+pub struct Outcome {
+    scene: &'static Scene,
+    /// By algorithm, as in [`ALGORITHMS`].
+    lanes: Vec<Measured>,
+}
+
+/// Runs all scenes and writes `hroc.md`, two tables and two figures into `--out`.
+pub fn run(flags: &Flags) -> anyhow::Result<()> {
+    let flags = &flags.with_default_scale(SCALE);
+    let frames = SCENES.len() * ALGORITHMS.len() * flags.frames as usize;
+    let output = Output::new(flags, "hroc", frames as u64)?;
+    let mut outcomes = Vec::new();
+    for scene in &SCENES {
+        let lanes =
+            ALGORITHMS.iter().map(|algorithm| algorithm.lane(flags)).collect::<anyhow::Result<_>>()?;
+        let lanes = output.run(scene.build(flags)?, flags, lanes)?;
+        let outcome = Outcome { scene, lanes };
+        output.say(&outcome.line());
+        outcomes.push(outcome);
+    }
+
+    write_csv(&output.file(".csv"), outcomes.iter().flat_map(rows::rows))?;
+    frames::write(&output.file("_frames.csv"), outcomes.iter().flat_map(rows::runs))?;
+    figures::write(&output, flags, &outcomes)?;
+    output.finish(&markdown::page(flags, &outcomes)?)
+}
+
+impl Outcome {
+    /// What is printed when the scene is done.
+    fn line(&self) -> String {
+        let ms = |algorithm: usize| self.lanes[algorithm].summary.frame_ms.median;
+        format!(
+            "{}: {:.2} ms hroc with filtering, {:.2} the exact set, {:.2} the view frustum alone (medians)",
+            self.scene.name,
+            ms(FILTERED),
+            ms(REF),
+            ms(VFC)
+        )
+    }
+
+    /// Of all objects that the exact set leaves out, how many an algorithm leaves out, 0 to 1: the
+    /// paper's C/R.
+    fn culled(&self, algorithm: usize) -> f64 {
+        let s = &self.lanes[algorithm].summary;
+        (s.objects as f64 - s.drawn.mean) / (s.objects as f64 - self.visible()).max(1.0)
+    }
+
+    /// The same of the objects in the frustum alone: what occlusion culling is there for.
+    fn culled_of_hidden(&self, algorithm: usize) -> f64 {
+        let s = &self.lanes[algorithm].summary;
+        let inside = s.in_frustum.mean;
+        // Who draws what is outside of the frustum, too, culls nothing inside of it.
+        (inside - s.drawn.mean).max(0.0) / (inside - self.visible()).max(1.0)
+    }
+
+    /// Triangles drawn over those of the exact set: what drawing too much costs.
+    fn overdraw(&self, algorithm: usize) -> f64 {
+        let triangles = |n: usize| self.lanes[n].summary.drawn_triangles.mean;
+        triangles(algorithm) / triangles(REF).max(1.0)
+    }
+
+    /// An algorithm's time over that of drawing the exact set: the median of the ratios frame by frame.
+    fn time_over_ref(&self, algorithm: usize) -> f64 {
+        self.lanes[algorithm].time_over(self.lanes[REF].times())
+    }
+
+    /// Objects that own a pixel, a frame: what REF draws.
+    fn visible(&self) -> f64 {
+        self.lanes[REF].summary.drawn.mean
+    }
+}
