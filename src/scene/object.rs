@@ -78,6 +78,17 @@ impl ObjectSet {
         })
     }
 
+    /// Takes the place of what it held: a bit a slot.
+    pub(crate) fn assign(&mut self, words: impl Iterator<Item = u64>) {
+        self.words.clear();
+        self.words.extend(words);
+    }
+
+    /// A bit a slot.
+    pub(crate) fn words(&self) -> &[u64] {
+        &self.words
+    }
+
     /// Empties the set and keeps its memory.
     pub fn clear(&mut self) {
         self.words.fill(0);
