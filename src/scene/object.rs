@@ -72,7 +72,7 @@ impl ObjectSet {
     /// The slots of its objects, in order.
     pub fn slots(&self) -> impl Iterator<Item = usize> {
         self.words.iter().enumerate().flat_map(|(at, &word)| {
-            std::iter::successors(Some(word), |rest| Some(rest & (rest - 1)))
+            std::iter::successors(Some(word), |&rest| (rest != 0).then(|| rest & (rest - 1)))
                 .take_while(|&rest| rest != 0)
                 .map(move |rest| 64 * at + rest.trailing_zeros() as usize)
         })

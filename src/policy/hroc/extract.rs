@@ -1,12 +1,13 @@
 //! Extraction of occludee groups (HROC, stage 2): bottom-up from the occluders.
 //!
-//! Each occluder marks its node and the nodes above it visible, and their siblings unknown; the nodes
+//! Each occluder marks its node and the nodes above it visible, and what hangs off that way unknown: the
+//! siblings, two of each node; the children, where an inner node holds the occluder itself. The nodes
 //! that are unknown in the end are the groups: the largest subtrees without an occluder. Without any
 //! occluder the root is the only group.
 //!
 //! The printed algorithm overwrites a sibling that is visible already, and drops the other objects of an
-//! occluder's leaf. Here a node that was visited keeps what it is, unless it becomes visible; it has two
-//! siblings; and the visible nodes are handed over, for their own objects to be asked about.
+//! occluder's leaf. Here a visible node stays visible, and visible nodes are handed over, for their own
+//! objects to be asked about.
 
 use crate::tree::{NodeId, Tree};
 
@@ -39,18 +40,18 @@ impl Extraction {
         let mut node = node;
         loop {
             let mark = std::mem::replace(&mut self.marks[node.index()], self.unknown + 1);
-            if mark <= self.unknown {
-                self.visible.push(node);
+            if mark == self.unknown + 1 {
+                return; // and so are those above it, with their children marked
             }
-            // Of a node that was visited, those above are visible and the siblings marked.
-            let Some(parent) = tree.parent(node).filter(|_| mark < self.unknown) else { return };
-            for sibling in tree.children(parent).into_iter().flatten() {
-                let mark = &mut self.marks[sibling.index()];
+            self.visible.push(node);
+            for child in tree.children(node).into_iter().flatten() {
+                let mark = &mut self.marks[child.index()];
                 if *mark < self.unknown {
                     *mark = self.unknown;
-                    self.groups.push(sibling);
+                    self.groups.push(child);
                 }
             }
+            let Some(parent) = tree.parent(node) else { return };
             node = parent;
         }
     }

@@ -1,8 +1,8 @@
 //! Hi-Z test (Rákos 2010): a rectangle and its nearest point against at most four texels.
 //!
-//! The level is ⌈log₂ size⌉ of the rectangle's longer side in pixels: at most as many pixels as a texel
-//! there is wide lie in at most two texels a side. The published code takes one level less, where they
-//! may lie in three, and looks at the first and the last of them.
+//! The level is ⌈log₂ d⌉, d from the first to the last pixel of the rectangle's longer side: pixels no
+//! farther apart than a texel is wide lie in at most two texels a side. The published code takes one level
+//! less, where they may lie in three, and looks at the first and the last of them.
 //!
 //! What passes [`SweepTest::Raster`](crate::query::SweepTest::Raster) passes here: a sample of the proxy
 //! that is in sight lies in the rectangle, is no nearer than the nearest point, and its stored depth is
@@ -34,7 +34,7 @@ impl Pyramid {
 
 /// The lowest level at which so many pixels in a row lie in at most two texels.
 fn level_for(pixels: u32) -> u32 {
-    pixels.next_power_of_two().trailing_zeros()
+    (pixels - 1).next_power_of_two().trailing_zeros()
 }
 
 #[cfg(test)]
