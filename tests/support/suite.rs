@@ -27,9 +27,9 @@ pub fn is_default(seed: u64) -> bool {
 
 /// By default a policy culls most of what is hidden inside the frustum, although a fifth of the
 /// world changes every frame and the camera cuts every sixth. Skipped questions about visible leaves
-/// cost the baseline and CHC much of that.
+/// cost the baseline and CHC much of that; rectangles against a pyramid say less than outlines.
 pub fn assert_culls_most(name: &str, outcome: Outcome) {
-    let least = if matches!(name, "statistical" | "chc" | "chc++") { 0.4 } else { 0.55 };
+    let least = if matches!(name, "statistical" | "chc" | "chc++" | "hi-z") { 0.4 } else { 0.55 };
     let share = outcome.culled as f64 / outcome.hidden as f64;
     println!("{name}: {share:.3} of what was hidden was culled");
     assert!(share > least, "{name} culled only {share:.2} of what was hidden: {outcome:?}");

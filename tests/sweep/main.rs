@@ -1,8 +1,10 @@
-//! Raster culling: the stages of sweeps, and the policies that sweep.
+//! Sweeps: each stage against the plain loop over samples, and the hybrid's movers.
 
-#[path = "../support/faulty.rs"]
-mod faulty;
-#[path = "../support/mod.rs"]
-mod support;
+#[path = "../support/stage.rs"]
+mod stage;
 
-mod policies;
+mod hybrid;
+mod owners;
+mod pyramid;
+mod table;
+mod tests;
