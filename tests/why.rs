@@ -12,7 +12,7 @@ use tercet::draw::Drawable;
 use tercet::geom::{Aabb, Frustum, Proxy, Question, View, Viewport};
 use tercet::policy::{self, Action, Context, DualQuery, Fate, Policy, Samples};
 use tercet::query::software::{SoftwarePass, SoftwareQueries};
-use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
+use tercet::query::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
 use tercet::scene::mesh::Mesh;
 use tercet::scene::{ObjectId, ObjectRef, Scene, SceneConfig, SceneObject, Traits};
 use tercet::tree::{NodeId, Straddlers, TightBoxes, TreeConfig, Votes};
@@ -54,6 +54,20 @@ impl QueryBackend for Listening {
     fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
         self.asked.insert(ticket, boxes.to_vec());
         self.queries.ask(ticket, boxes, want)
+    }
+
+    fn draw_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.queries.draw_objects(objects, record)
+    }
+
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        // It says nothing of any node.
+        self.asked.insert(ticket, vec![]);
+        self.queries.sweep(ticket, sweep)
     }
 
     fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
@@ -142,6 +156,9 @@ impl<P: Policy> Watch<P> {
             (Why::Near(_), Some(node)) => question(&node.bounds) == Question::Visible,
             (Why::Remembered { within, .. }, Some(_)) => within != Some(0),
             (Why::Unasked, _) => matches!(self.eye.policy().name(), "none" | "frustum"),
+            (Why::Swept { .. }, _) => {
+                matches!(self.eye.policy().name(), "roc" | "hroc" | "hi-z" | "hybrid")
+            }
             (Why::Given { .. }, _) => matches!(self.eye.policy().name(), "opt" | "exact"),
             _ => false,
         };
@@ -194,6 +211,7 @@ fn kind(why: &Why) -> &'static str {
         Why::Always { .. } => "always",
         Why::Unasked => "unasked",
         Why::Given { .. } => "given",
+        Why::Swept { .. } => "swept",
         Why::Outside => "outside",
         Why::NoSample(_) => "no sample",
         Why::Hidden(_) => "hidden",
@@ -229,7 +247,7 @@ fn every_explanation_is_true() {
             }
         }
     }
-    let all = ["always", "unasked", "given", "outside", "no sample", "hidden", "visible", "counted"];
+    let all = ["always", "unasked", "given", "swept", "outside", "no sample", "hidden", "visible", "counted"];
     for kind in all.into_iter().chain(["remembered", "hidden now", "near"]) {
         assert!(kinds.get(kind).is_some_and(|&n| n > 10), "{kind} hardly occurred: {kinds:?}");
     }

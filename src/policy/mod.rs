@@ -12,14 +12,19 @@ mod dual_query;
 mod fate;
 mod front;
 mod frustum;
+mod hi_z;
 mod hierarchy;
 mod history;
+mod hroc;
+mod hybrid;
 mod none;
 mod order;
 mod recorded;
+mod roc;
 mod skip;
 mod statistical;
 mod stop_and_wait;
+mod two_phase;
 mod waves;
 
 pub use chc::Chc;
@@ -27,26 +32,33 @@ pub use chc_plus_plus::{ChcPlusPlus, KeepRule};
 pub use dual_query::{DualQuery, Order};
 pub use fate::{Fate, Samples};
 pub use frustum::FrustumOnly;
+pub use hi_z::{EveryRectangle, HiZ};
 pub use hierarchy::{Coherence, Hierarchy};
 pub use history::{History, NodeState};
+pub use hroc::{Groups, Hroc};
+pub use hybrid::{Hybrid, MoversApart};
 pub use none::DrawAll;
 pub use order::ScreenTiles;
 pub use recorded::{Recorded, Recording};
+pub use roc::{EveryBox, Roc};
 pub use skip::{Share, Skip};
 pub use statistical::Statistical;
 pub use stop_and_wait::StopAndWait;
+pub use two_phase::{First, Plan, Targets, TwoPhase};
 
 use crate::dial::{self, Dial};
 use crate::geom::{Frustum, Proxy, View};
-use crate::query::{Answer, Ticket, Want};
-use crate::scene::ObjectId;
+use crate::query::{Answer, SweepTest, Ticket, Want};
+use crate::scene::{ObjectId, Scene};
 use crate::tree::{NodeId, Tree, Votes};
 use crate::{Costs, Counter, Error, Tradeoff};
 
 /// What a policy may look at.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<'a> {
-    /// Where things are.
+    /// What is there: who stands behind the tree's slots.
+    pub scene: &'a Scene,
+    /// Where things are: the scene's tree.
     pub tree: &'a Tree,
     /// The camera.
     pub view: &'a View,
@@ -92,6 +104,18 @@ pub enum Action<'p> {
         /// What to find out.
         want: Want,
     },
+    /// Ask about many objects at once: those at and below groups, and loose ones; see
+    /// [`Sweep`](crate::query::Sweep).
+    Sweep {
+        /// Names the question in its answer.
+        ticket: Ticket,
+        /// Nodes, none of them below another.
+        groups: &'p [NodeId],
+        /// Objects that are tested by themselves.
+        loose: &'p [ObjectId],
+        /// How to test.
+        test: SweepTest,
+    },
     /// Deliver answers to what was asked.
     Wait(Wait),
     /// The frame is complete.
@@ -111,6 +135,12 @@ pub trait Policy: Send + Sync {
     /// Whether it asks about nodes: only then are fine leaves worth their upkeep.
     fn asks(&self) -> bool {
         true
+    }
+
+    /// Whether it will ask which of the drawn objects own samples ([`SweepTest::Owners`]): what it
+    /// draws is then drawn so that this can be told.
+    fn asks_owners(&self) -> bool {
+        false
     }
 
     /// Starts a frame.
@@ -175,6 +205,10 @@ impl Policy for Box<dyn Policy> {
         (**self).asks()
     }
 
+    fn asks_owners(&self) -> bool {
+        (**self).asks_owners()
+    }
+
     fn begin(&mut self, cx: &Context<'_>) {
         (**self).begin(cx);
     }
@@ -233,6 +267,10 @@ pub const NAMES: &[&str] = &[
     "hierarchy-b",
     "hierarchy-c",
     "hierarchy-d",
+    "roc",
+    "hroc",
+    "hi-z",
+    "hybrid",
     "opt",
     "exact",
 ];
@@ -254,6 +292,10 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "hierarchy-b" => Box::new(Hierarchy::new(Coherence::Updating)),
         "hierarchy-c" => Box::new(Hierarchy::new(Coherence::Propagating)),
         "hierarchy-d" => Box::new(Hierarchy::new(Coherence::Conservative)),
+        "roc" => Box::new(Roc::default()),
+        "hroc" => Box::new(Hroc::default()),
+        "hi-z" => Box::new(HiZ::default()),
+        "hybrid" => Box::new(Hybrid::default()),
         "opt" => Box::new(Recorded::new(Recording::StopAndWait)),
         "exact" => Box::new(Recorded::new(Recording::ExactSet)),
         _ => return Err(Error::UnknownPolicy { name: name.to_owned(), known: NAMES.join(", ") }),
