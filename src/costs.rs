@@ -10,6 +10,18 @@ use crate::stats::FrameStats;
 pub struct Costs {
     /// Natural logarithm of what [`Costs::question`] returns.
     log: f32,
+    last: Option<FrameCost>,
+}
+
+/// What one frame of a view took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameCost {
+    /// Seconds from its begin to its end, the device's drawing included.
+    pub total: f32,
+    /// The part of it that was drawing, seconds.
+    pub draw: f32,
+    /// Objects drawn.
+    pub drawn: u32,
 }
 
 /// How much a new frame counts.
@@ -25,13 +37,39 @@ impl Costs {
     /// A question that costs as much as drawing `objects` objects, within 1/256 to 256.
     pub fn of(objects: f32) -> Self {
         let objects = if objects.is_nan() { 1.0 } else { objects };
-        Self { log: objects.clamp(1.0 / 256.0, 256.0).ln() }
+        Self { log: objects.clamp(1.0 / 256.0, 256.0).ln(), last: None }
+    }
+
+    /// What the view's last frame took; None before the first, and where nobody knows how long a
+    /// device draws.
+    pub fn last_frame(&self) -> Option<FrameCost> {
+        self.last
+    }
+
+    /// The same costs, after a frame that took this.
+    pub fn after(self, last: FrameCost) -> Self {
+        Self { last: Some(last), ..self }
     }
 
     /// What a question costs, policy and waiting included, in objects that could be drawn
     /// instead: greater than 0.
     pub fn question(&self) -> f32 {
         self.log.exp()
+    }
+
+    /// Takes the times of the last frame as they are.
+    pub(crate) fn record(&mut self, stats: &FrameStats) {
+        // Answers waited for a part of the device's drawing, which then is in the waiting already.
+        let after = stats.device_draw.saturating_sub(stats.awaited_draw);
+        let total = stats.policy + stats.query + stats.wait + stats.draw + after;
+        let draw = stats.draw + stats.device_draw;
+        let last = FrameCost { total: total.as_secs_f32(), draw: draw.as_secs_f32(), drawn: stats.drawn };
+        self.last = Some(last);
+    }
+
+    /// Forgets the last frame: nobody knows what it took.
+    pub(crate) fn lose_frame(&mut self) {
+        self.last = None;
     }
 
     /// Takes a frame's times. A frame that drew or asked nothing, or took no time, tells nothing.
@@ -90,6 +128,19 @@ mod tests {
         let [device_draw, awaited_draw] = [800, 200].map(Duration::from_micros);
         after.learn(&FrameStats { device_draw, awaited_draw, ..frame(700, 10, 100, 20) });
         assert_eq!(apart, after);
+    }
+
+    #[test]
+    fn a_frame_is_as_long_as_its_parts_and_no_device_time_counts_twice() {
+        let [device_draw, awaited_draw] = [700, 500].map(Duration::from_micros);
+        let mut costs = Costs::default();
+        assert_eq!(costs.last_frame(), None);
+        costs.record(&FrameStats { device_draw, awaited_draw, ..frame(600, 10, 100, 20) });
+        let FrameCost { total, draw, drawn } = costs.last_frame().expect("it was recorded");
+        assert!((total - 900e-6).abs() < 1e-8 && (draw - 800e-6).abs() < 1e-8 && drawn == 20, "{costs:?}");
+        assert_eq!(costs.question(), Costs::default().question());
+        costs.lose_frame();
+        assert_eq!(costs, Costs::default());
     }
 
     #[test]

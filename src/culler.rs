@@ -167,9 +167,15 @@ impl<P: Policy> Culler<P> {
         self.votes.asks = self.policy.asks();
         stats.drawn = self.drawn.visible.len() as u32;
         stats.policy = start.elapsed().saturating_sub(stats.draw + stats.query + stats.wait);
-        // Drawing that is not told apart from waiting would make questions look dear.
-        if draw_time != DrawTime::Unknown {
-            self.costs.learn(&stats);
+        // Drawing that is not told apart from waiting would make questions look dear. So would a few
+        // questions of a policy that does not ask about nodes, in a frame that it spends otherwise.
+        if draw_time == DrawTime::Unknown {
+            self.costs.lose_frame();
+        } else {
+            self.costs.record(&stats);
+            if self.votes.asks {
+                self.costs.learn(&stats);
+            }
         }
         self.votes.costs = self.costs;
         Ok(stats)

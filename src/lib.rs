@@ -86,7 +86,7 @@ pub mod scene;
 pub mod tree;
 pub mod worlds;
 
-pub use costs::Costs;
+pub use costs::{Costs, FrameCost};
 pub use culler::{Culler, Holder, Voter, Why};
 pub use dial::{Dial, DialKind};
 pub use error::Error;

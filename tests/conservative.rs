@@ -6,6 +6,8 @@
 mod dropping;
 #[path = "support/faulty.rs"]
 mod faulty;
+#[path = "support/fickle.rs"]
+mod fickle;
 mod support;
 #[path = "support/tally.rs"]
 mod tally;
@@ -17,6 +19,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use dropping::Dropping;
 use faulty::Faulty;
+use fickle::Fickle;
 use rayon::prelude::*;
 use support::lying::Lying;
 use support::stage::Stage;
@@ -25,7 +28,7 @@ use support::{Outcome, run};
 use tally::Tally;
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
-use tercet::policy;
+use tercet::policy::{self, Gated};
 use tercet::query::software::SoftwareQueries;
 use tercet::tree::{SplitPlane, Straddlers, TightBoxes, TreeConfig};
 use tercet::worlds::{self, Model, Pathology};
@@ -147,6 +150,30 @@ fn answers_that_go_astray_lose_nothing() {
             .collect();
         let culled: usize = outcomes.iter().map(|outcome| outcome.culled).sum();
         assert!(culled > 0 || !culls_hidden(name), "{name} culled nothing that was hidden");
+    }
+}
+
+/// Behind a gate that opens and shuts, with answers that come and some that do not.
+#[test]
+fn behind_a_gate_nothing_is_lost() {
+    for name in ["dual-query", "chc", "chc++", "hierarchy-c"] {
+        let gated = Arc::new(AtomicU32::new(0));
+        let outcomes = (0..12u64).into_par_iter().map(|seed| {
+            let mut stage = Stage::new(worlds::random(seed, 240), seed, SCREEN, true);
+            let tree = trees()[seed as usize % trees().len()].clone();
+            let policy = Fickle(Gated::new(dialled(name, seed)));
+            let policy = Tally { inner: policy, key: "gated_frames", sum: gated.clone() };
+            let outcome = match seed % 2 {
+                0 => run(&mut stage, tree, policy, &mut SoftwareQueries::new(), 2 * FRAMES),
+                _ => run(&mut stage, tree, policy, &mut Faulty::new(seed), 2 * FRAMES),
+            };
+            assert_eq!(outcome.lost, 0, "{name} lost an object in random world {seed}");
+            outcome.culled
+        });
+        let culled: usize = outcomes.sum();
+        let (gated, frames) = (gated.load(Ordering::Relaxed), 12 * 2 * FRAMES);
+        println!("{name}: {gated} of {frames} frames were drawn whole, {culled} objects culled");
+        assert!(gated > 24 && gated < frames - 24 && culled > 0, "{name}: {gated}, {culled}");
     }
 }
 

@@ -64,6 +64,7 @@ const PROGRAM: Program = Program {
     ],
     frames: "120",
     full_detail: true,
+    gate: false,
     refused: &[
         ("backend", "--backend has no meaning here: all lanes run on the software backend"),
         ("policy", "--policy has no meaning here: the table says which algorithms run"),

@@ -9,7 +9,7 @@ use clap::parser::ValueSource;
 use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, ValueEnum};
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
-use tercet::policy::{self, Policy};
+use tercet::policy::{self, Gated, Policy};
 use tercet::tree::TreeConfig;
 
 use super::program::Program;
@@ -84,6 +84,10 @@ pub struct Flags {
     /// Whether the command line names a scale.
     #[arg(skip)]
     pub has_scale: bool,
+
+    /// Whether the policy is behind a gate.
+    #[arg(skip)]
+    pub gate: bool,
 }
 
 /// An example without flags of its own.
@@ -121,6 +125,7 @@ impl Flags {
         let more = More::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         flags.example = program.name;
         flags.full_detail |= program.full_detail;
+        flags.gate = program.gate;
         flags.has_scale = matches.value_source("scale") == Some(ValueSource::CommandLine);
         if let Err(error) = program.check(&matches).and_then(|()| flags.check()) {
             command.clone().error(ErrorKind::InvalidValue, error).exit();
@@ -128,9 +133,9 @@ impl Flags {
         (flags, more)
     }
 
-    /// The policy, its dials set.
+    /// The policy, its dials set; behind a gate in a demo.
     pub fn policy(&self) -> anyhow::Result<Box<dyn Policy>> {
-        let mut policy = policy::by_name(&self.policy)?;
+        let mut policy = by_name(&self.policy, self.gate)?;
         let known = policy.dials();
         for (key, value) in self.dials.iter().filter(|(key, _)| has(&known, key)) {
             policy.set(key, value)?;
@@ -230,6 +235,19 @@ const MAX_ERROR: Number = Number {
 };
 const FLIGHT_END: Number = Number { key: "flight_end", about: "how far the camera flies, 0 to 1", most: 1.0 };
 
+/// A policy with its default dials.
+fn by_name(name: &str, gate: bool) -> anyhow::Result<Box<dyn Policy>> {
+    let policy = policy::by_name(name)?;
+    Ok(if gate { Box::new(Gated::new(policy)) } else { policy })
+}
+
+/// The dials that a gate adds to those of a policy.
+fn gate_dials() -> Vec<tercet::Dial> {
+    let dials = |gate| by_name(DEFAULT_POLICY, gate).map(|policy| policy.dials()).unwrap_or_default();
+    let own = dials(false);
+    dials(true).into_iter().filter(|dial| !has(&own, dial.key)).collect()
+}
+
 fn has(dials: &[tercet::Dial], key: &str) -> bool {
     dials.iter().any(|dial| dial.key == key)
 }
@@ -263,10 +281,13 @@ fn catalogue(program: &Program) -> String {
         &[DEFAULT_POLICY]
     };
     for name in names {
-        let dials = policy::by_name(name).map(|policy| policy.dials()).unwrap_or_default();
+        let dials = by_name(name, false).map(|policy| policy.dials()).unwrap_or_default();
         if !dials.is_empty() {
             list(&mut text, &format!("Dials of the policy {name}"), &dials);
         }
+    }
+    if program.gate {
+        list(&mut text, "Dials of every policy that asks", &gate_dials());
     }
     list(&mut text, "Dials of the tree", &TreeConfig::default().dials());
     let _ = writeln!(text, "  {:<24} all of them at once: paper, stable", "preset=stable");

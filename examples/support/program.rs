@@ -17,6 +17,9 @@ pub struct Program {
     pub frames: &'static str,
     /// Whether meshes are drawn with all their triangles, unless the command line says otherwise.
     pub full_detail: bool,
+    /// Whether the policy is behind a gate ([`Gated`](tercet::policy::Gated)): a demo shall never be
+    /// slower than it need be, a comparison compares policies as they are.
+    pub gate: bool,
     /// Shared flags without a meaning here, and what is said when they are given.
     pub refused: &'static [(&'static str, &'static str)],
 }
@@ -29,9 +32,10 @@ impl Program {
             ("--headless", "the whole flight, with its figures and pictures"),
             ("--frames 60 --oracle", "check each frame against the exact visible set"),
             ("--headless --policy frustum", "what the view frustum alone would leave to draw"),
+            ("--headless --set gate=off", "ask in every frame, even where it does not pay"),
             ("--set preset=paper", "the tree with the rule and the constants of the 2005 paper"),
         ];
-        Self { name, about, examples: EXAMPLES, frames: "240", full_detail: false, refused: &[] }
+        Self { name, about, examples: EXAMPLES, frames: "240", full_detail: false, gate: true, refused: &[] }
     }
 
     /// Whether a shared flag has a meaning here.
