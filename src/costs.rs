@@ -7,6 +7,7 @@ use crate::stats::FrameStats;
 /// Smoothed times of one view's last frames. To policies and to the tree they are a recorded
 /// argument like any other: the same costs and answers, the same decisions.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct Costs {
     /// Natural logarithm of what [`Costs::question`] returns.
     log: f32,

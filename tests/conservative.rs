@@ -13,7 +13,7 @@ mod trusting;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use faulty::Faulty;
+use faulty::faulty;
 use rayon::prelude::*;
 use support::lying::Lying;
 use support::stage::Stage;
@@ -136,7 +136,7 @@ fn answers_that_go_astray_lose_nothing() {
             .map(|seed| {
                 let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
                 let tree = trees()[seed as usize % trees().len()].clone();
-                let outcome = run(&mut stage, tree, dialled(name, seed), &mut Faulty::new(seed), FRAMES);
+                let outcome = run(&mut stage, tree, dialled(name, seed), &mut faulty(seed), FRAMES);
                 assert_eq!(outcome.lost, 0, "{name} lost an object in random world {seed}");
                 outcome
             })
