@@ -7,6 +7,7 @@ use crate::stats::FrameStats;
 /// Smoothed times of one view's last frames. To policies and to the tree they are a recorded
 /// argument like any other: the same costs and answers, the same decisions.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct Costs {
     /// Natural logarithm of what [`Costs::question`] returns.
     log: f32,
@@ -15,6 +16,7 @@ pub struct Costs {
 
 /// What one frame of a view took.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct FrameCost {
     /// Seconds from its begin to its end, the device's drawing included.
     pub total: f32,

@@ -31,6 +31,11 @@ pub struct Culler<P> {
     drawn: DrawnList,
     votes: Votes,
     open: OpenQuestions,
+    /// Whether a view that shows nothing of what the last one showed counts as a cut; see
+    /// [`Culler::cut`].
+    pub detects_cuts: bool,
+    /// Whether one was announced.
+    expects_cut: bool,
     /// Reused by walks through the tree.
     stack: Vec<(NodeId, PlaneMask)>,
 }
@@ -48,6 +53,8 @@ impl<P: Policy> Culler<P> {
             scene: (0, 0),
             drawn: DrawnList::default(),
             open: OpenQuestions::default(),
+            detects_cuts: true,
+            expects_cut: false,
             stack: Vec::new(),
         }
     }
@@ -61,7 +68,8 @@ impl<P: Policy> Culler<P> {
     /// # Errors
     /// [`Error::PendingEdits`] if the scene was edited since its last update;
     /// [`Error::CannotBlock`] if the policy needs answers that the backend cannot wait for; and
-    /// what the backend reports. The frame is then incomplete, and the visible list starts anew.
+    /// what the backend reports. If asking failed, the frame is complete all the same: whatever has
+    /// no answer is drawn. If drawing failed, it is not. In both cases the visible list starts anew.
     pub fn frame<B: QueryBackend>(
         &mut self,
         scene: &Scene,
@@ -95,17 +103,24 @@ impl<P: Policy> Culler<P> {
             self.scene = scene.id();
             self.policy.reset();
         }
+        let frustum = Frustum::new(view);
+        let is_announced = std::mem::take(&mut self.expects_cut);
+        let is_cut = is_announced || self.detects_cuts && self.drawn.is_cut(scene, &frustum);
+        if is_cut {
+            self.policy.cut();
+        }
         // Frame 0 is never drawn: it stands for "never".
         self.frame = self.frame.wrapping_add(1).max(1);
         self.open.clear();
         self.drawn.begin(scene, self.frame);
         self.drawn.owned = self.policy.asks_owners();
-        let frustum = Frustum::new(view);
         let tradeoff = self.tradeoff;
         let (frame, costs) = (self.frame, self.costs);
         let tree = scene.tree();
         let cx = Context { scene, tree, view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
-        let mut stats = FrameStats::default();
+        let mut stats = FrameStats { cuts: is_cut.into(), ..FrameStats::default() };
+        // What asking reports. Nothing more is asked then, and all that is open is unknown.
+        let mut failure = None;
         queries.begin(view)?;
         let draw_time = queries.draw_time();
         if let DrawTime::Device { total, awaited } = draw_time {
@@ -129,7 +144,7 @@ impl<P: Policy> Culler<P> {
                     stats.queries += 1;
                     stats.query_boxes += boxes.len() as u32;
                     let ticket = self.open.ask(ticket);
-                    stats.query += timed(|| queries.ask(ticket, boxes, want))?;
+                    stats.query += attempt(&mut failure, || queries.ask(ticket, boxes, want));
                 }
                 Action::Sweep { ticket, groups, loose, test } => {
                     if self.drawn.flush(queries, &mut draw, &mut stats)? || stats.queries == 0 {
@@ -139,19 +154,19 @@ impl<P: Policy> Culler<P> {
                     stats.query_boxes += (groups.len() + loose.len()) as u32;
                     let ticket = self.open.ask(ticket);
                     let sweep = Sweep { scene, view, frustum: &frustum, groups, loose, test };
-                    stats.query += timed(|| queries.sweep(ticket, &sweep))?;
+                    stats.query += attempt(&mut failure, || queries.sweep(ticket, &sweep));
                 }
                 Action::Wait(wait) => {
                     stats.waves += u32::from(wait == Wait::Block);
                     let (policy, open) = (&mut self.policy, &mut self.open);
-                    stats.wait += timed(|| {
+                    stats.wait += attempt(&mut failure, || {
                         queries.answers(wait, |ticket, answer| {
                             if let Some(asked) = open.close(ticket) {
                                 policy.answer(&cx, asked, answer);
                             }
                         })
-                    })?;
-                    if wait == Wait::Block {
+                    });
+                    if wait == Wait::Block || failure.is_some() {
                         open.lost().for_each(|asked| policy.answer(&cx, asked, Answer::Unknown));
                     }
                 }
@@ -160,6 +175,9 @@ impl<P: Policy> Culler<P> {
         }
         self.drawn.flush(queries, &mut draw, &mut stats)?;
         self.drawn.flush_late(queries, &mut draw, &mut stats)?;
+        if let Some(error) = failure {
+            return Err(error);
+        }
         queries.end()?;
         // Votes that nobody took before are out of date.
         self.votes.clear();
@@ -183,6 +201,14 @@ impl<P: Policy> Culler<P> {
 }
 
 impl<P> Culler<P> {
+    /// Says that the next frame has nothing to do with those before: another place, another time.
+    /// What they showed is forgotten, so that the next frame is as dear as a first one, and no dearer.
+    /// Nothing is ever lost without it; a jump that leaves nothing of the last frame in view is found
+    /// without being announced ([`Culler::detects_cuts`]).
+    pub fn cut(&mut self) {
+        self.expects_cut = true;
+    }
+
     /// The objects drawn in the last frame, in the order of drawing.
     pub fn visible(&self) -> &[ObjectRef] {
         &self.drawn.visible
@@ -201,6 +227,18 @@ impl<P> Culler<P> {
     /// What asking and drawing cost in the last frames.
     pub fn costs(&self) -> Costs {
         self.costs
+    }
+
+    /// Whether a cut was announced that no frame has followed yet.
+    #[cfg(feature = "record")]
+    pub(crate) fn expects_cut(&self) -> bool {
+        self.expects_cut
+    }
+
+    /// Puts recorded costs in the place of measured ones.
+    #[cfg(feature = "record")]
+    pub(crate) fn set_costs(&mut self, costs: Costs) {
+        self.costs = costs;
     }
 
     /// The policy, to read.
@@ -288,6 +326,21 @@ struct DrawnList {
 }
 
 impl DrawnList {
+    /// Whether next to nothing of what was drawn in the last frame is in view now. O(1): a few objects
+    /// speak for all.
+    fn is_cut(&self, scene: &Scene, frustum: &Frustum) -> bool {
+        let step = self.visible.len().div_ceil(CUT_SAMPLES).max(1);
+        let (mut seen, mut still) = (0, 0);
+        for object in self.visible.iter().step_by(step) {
+            // What is drawn always, or is gone, says nothing about the view.
+            if let Some(aabb) = scene.object(object.id).and_then(|object| object.bounds) {
+                seen += 1;
+                still += usize::from(frustum.intersects(&aabb));
+            }
+        }
+        seen >= CUT_SAMPLES / 4 && still * CUT_SHARE < seen
+    }
+
     /// Starts anew: everything drawn next has entered, and nothing has left.
     fn forget(&mut self) {
         self.visible.clear();
@@ -398,6 +451,22 @@ impl DrawnList {
     fn has(&self, id: ObjectId) -> bool {
         self.last_drawn.get(id.slot()) == Some(&(id.generation(), self.frame))
     }
+}
+
+/// Objects of the last frame that are looked at for a cut.
+const CUT_SAMPLES: usize = 64;
+/// A cut leaves less than one in so many of them in view.
+const CUT_SHARE: usize = 16;
+
+/// Runs something unless something has failed before, and returns the time that it took.
+fn attempt(failure: &mut Option<Error>, f: impl FnOnce() -> Result<(), Error>) -> Duration {
+    if failure.is_some() {
+        return Duration::ZERO;
+    }
+    timed(f).unwrap_or_else(|error| {
+        *failure = Some(error);
+        Duration::ZERO
+    })
 }
 
 /// Runs something and returns the time that it took.

@@ -64,6 +64,12 @@ pub enum Error {
         /// What it reported.
         why: String,
     },
+    /// A recording that cannot be made, or cannot be replayed.
+    #[error("the recording: {why}")]
+    Recording {
+        /// What is wrong, and what would be right.
+        why: String,
+    },
     /// A policy of a name that does not exist.
     #[error("there is no policy {name:?}; the policies are {known}")]
     UnknownPolicy {

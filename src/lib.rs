@@ -68,6 +68,8 @@
 //! | exact software rasteriser and counts | `query/software/` | |
 //! | exact counts on the GPU (feature `gpu`) | `query/gpu/`, `shaders/` | |
 //! | exact visible set (item buffer) | `query/oracle.rs` | |
+//! | faults of devices, on purpose | `query/fault.rs` | |
+//! | recordings, replayed bit for bit (feature `record`) | `record/` | |
 
 #![warn(unreachable_pub)]
 
@@ -82,6 +84,8 @@ pub mod draw;
 pub mod geom;
 pub mod policy;
 pub mod query;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod scene;
 pub mod tree;
 pub mod worlds;

@@ -25,6 +25,8 @@ pub struct FrameStats {
     pub waves: u32,
     /// Changes between drawing and asking.
     pub state_changes: u32,
+    /// 1 if the view has jumped: it was announced ([`Culler::cut`](crate::Culler::cut)), or found out.
+    pub cuts: u32,
     /// Time in the policy and in the driver's own work.
     pub policy: Duration,
     /// Time in the backend's and the app's drawing.

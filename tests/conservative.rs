@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use dropping::Dropping;
-use faulty::Faulty;
+use faulty::faulty;
 use fickle::Fickle;
 use rayon::prelude::*;
 use support::lying::Lying;
@@ -143,7 +143,7 @@ fn answers_that_go_astray_lose_nothing() {
             .map(|seed| {
                 let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
                 let tree = trees()[seed as usize % trees().len()].clone();
-                let outcome = run(&mut stage, tree, dialled(name, seed), &mut Faulty::new(seed), FRAMES);
+                let outcome = run(&mut stage, tree, dialled(name, seed), &mut faulty(seed), FRAMES);
                 assert_eq!(outcome.lost, 0, "{name} lost an object in random world {seed}");
                 outcome
             })
@@ -165,7 +165,7 @@ fn behind_a_gate_nothing_is_lost() {
             let policy = Tally { inner: policy, key: "gated_frames", sum: gated.clone() };
             let outcome = match seed % 2 {
                 0 => run(&mut stage, tree, policy, &mut SoftwareQueries::new(), 2 * FRAMES),
-                _ => run(&mut stage, tree, policy, &mut Faulty::new(seed), 2 * FRAMES),
+                _ => run(&mut stage, tree, policy, &mut faulty(seed), 2 * FRAMES),
             };
             assert_eq!(outcome.lost, 0, "{name} lost an object in random world {seed}");
             outcome.culled

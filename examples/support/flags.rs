@@ -60,7 +60,7 @@ pub struct Flags {
     #[arg(long = "static")]
     pub still: bool,
 
-    /// Open no window: fly once, then write figures and pictures. So do --oracle and --out, and a
+    /// Open no window: fly once, then write figures and pictures. So do --oracle, --out, and a
     /// machine without a display
     #[arg(long)]
     pub headless: bool,
@@ -69,7 +69,7 @@ pub struct Flags {
     #[arg(long)]
     pub oracle: bool,
 
-    /// Record the run, to be replayed bit for bit
+    /// Record the run, to be replayed bit for bit with the example `replay`; opens no window
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
 
@@ -186,7 +186,7 @@ impl Flags {
 
     /// Whether figures are wanted rather than a window.
     pub fn is_headless(&self) -> bool {
-        self.headless || self.oracle || self.out.is_some()
+        self.headless || self.oracle || self.out.is_some() || self.record.is_some()
     }
 
     /// The rectangle that is drawn.
@@ -201,9 +201,6 @@ impl Flags {
 
     /// Refuses what cannot be done, before a world is built.
     fn check(&self) -> anyhow::Result<()> {
-        if let Some(file) = &self.record {
-            bail!("--record {}: recording is not there yet; run without it", file.display());
-        }
         let policy = self.policy()?;
         for (key, value) in &self.dials {
             if !has(&policy.dials(), key) && !is_tree_dial(key) && !is_own_dial(key) {
@@ -359,7 +356,6 @@ mod tests {
     fn what_cannot_be_done_is_refused() {
         for line in [
             "--backend nonsense",
-            "--record frames.bin",
             "--policy nonsense",
             "--set nonsense=1",
             "--set o_split=many",

@@ -5,6 +5,7 @@ use tercet::Culler;
 use tercet::scene::{Scene, SceneConfig};
 
 use super::flags::Flags;
+use super::recording::Recording;
 use super::run::{Frame, Run};
 use super::scenario::Scenario;
 use super::stage::Stage;
@@ -13,9 +14,11 @@ use super::stage::Stage;
 pub fn run(flags: &Flags, mut scenario: Scenario) -> anyhow::Result<()> {
     // The scene knows where things are, the culler what one camera sees, and the stage holds the
     // backend, which answers whether a box is hidden, with the renderer that goes with it.
-    let mut scene = Scene::new(SceneConfig { tree: flags.tree()?, ..Default::default() });
+    let config = SceneConfig { tree: flags.tree()?, ..Default::default() };
+    let mut scene = Scene::new(config.clone());
     let mut eye = Culler::new(flags.policy()?);
     let mut stage = Stage::new(flags)?;
+    let mut recording = Recording::new(flags, &config, &mut scene, &eye, &mut stage, &scenario.name)?;
     // Before the first frame: the tree is built at once as finely as somebody who asks wants it.
     scene.adapt([&mut eye]);
 
@@ -32,7 +35,9 @@ pub fn run(flags: &Flags, mut scenario: Scenario) -> anyhow::Result<()> {
 
         // 2. Draw, without what is hidden: the app's own renderer is handed the objects to draw,
         //    in several batches, and the engine asks its questions between.
+        recording.begin(&mut scene, &view, &eye);
         let drawn = stage.frame(&mut eye, &scene, world, &view)?;
+        recording.end(&eye, &mut stage)?;
 
         // 3. What was seen tells the tree where to be finer, and where coarser.
         let adapted = scene.adapt([&mut eye]);
@@ -40,5 +45,5 @@ pub fn run(flags: &Flags, mut scenario: Scenario) -> anyhow::Result<()> {
         run.record(world, Frame { scene: &scene, view: &view, eye: &eye, synced, drawn, adapted })?;
     }
     run.finish(&scene, &scenario.world, &eye)?;
-    Ok(())
+    recording.finish()
 }

@@ -13,6 +13,7 @@ pub mod painter;
 pub mod picture;
 pub mod plots;
 pub mod program;
+pub mod recording;
 pub mod reference;
 pub mod report;
 pub mod run;

@@ -5,6 +5,7 @@ use glam::{Affine3A, DVec3, Vec3};
 /// An axis-aligned box in metres, closed on all sides: flat, linear and point-like boxes are
 /// ordinary boxes. A box with `min > max` on some axis is *inverted* and contains nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct Aabb {
     /// The corner with the least coordinates.
     pub min: Vec3,

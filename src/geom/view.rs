@@ -17,6 +17,7 @@ use crate::Error;
 
 /// Which end of the depth range is near.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub enum DepthDirection {
     /// 1 is near, 0 is far: the default, precise at every distance in a float format.
     #[default]
@@ -46,6 +47,7 @@ impl DepthDirection {
 /// What the app's depth buffer stores. Sixteen bits are refused where a target is handed in:
 /// too coarse to answer exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub enum DepthFormat {
     /// 32-bit float.
     #[default]
@@ -56,6 +58,7 @@ pub enum DepthFormat {
 
 /// The rectangle of the target that a view is drawn to, in pixels of the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct Viewport {
     /// Left edge.
     pub x: u32,

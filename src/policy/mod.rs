@@ -154,8 +154,13 @@ pub trait Policy: Send + Sync {
     /// Takes an answer to a question of this frame.
     fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>);
 
-    /// Forgets all history: after a camera cut, or for another scene.
+    /// Forgets all history: for another scene.
     fn reset(&mut self) {}
+
+    /// Forgets what earlier frames showed: the next one has nothing to do with them.
+    fn cut(&mut self) {
+        self.reset();
+    }
 
     /// The dual answers of the frame, for the tree's adaptation; it may add none.
     fn vote(&mut self, _votes: &mut Votes) {}
@@ -225,6 +230,10 @@ impl Policy for Box<dyn Policy> {
 
     fn reset(&mut self) {
         (**self).reset();
+    }
+
+    fn cut(&mut self) {
+        (**self).cut();
     }
 
     fn vote(&mut self, votes: &mut Votes) {

@@ -1,14 +1,17 @@
 //! Is it hidden? A backend owns the depth of one frame and answers questions about boxes.
 
 pub(crate) mod compact;
+pub mod fault;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod kept;
 pub mod oracle;
 pub mod software;
 mod sweep;
 
 use std::time::Duration;
 
+pub use kept::KeptAnswer;
 pub use sweep::{Sweep, SweepTest};
 
 use crate::Error;

@@ -23,6 +23,7 @@ pub struct BoundsF64 {
 
 /// How the app expects the object to move: a hint, which no algorithm here needs so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mobility {
     /// Not known.
     #[default]
@@ -48,6 +49,7 @@ pub struct Slack(pub f32);
 
 /// Which mesh the object is an instance of. The scene keeps it for the app's draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct Batch(pub u32);
 
 /// A simplified mesh *inside* the object, in the object's own space, which the app's closure may
@@ -57,6 +59,7 @@ pub struct OccluderMesh(pub Mesh);
 
 /// The optional components of one object, for apps without a hecs world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct Traits {
     /// See [`Mobility`].
     pub mobility: Mobility,

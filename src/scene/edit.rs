@@ -7,6 +7,7 @@ use super::Scene;
 use super::components::Traits;
 use super::object::ObjectId;
 use super::objects::Place;
+use super::tape::SceneEdit;
 use crate::geom::Aabb;
 
 impl Scene {
@@ -21,6 +22,7 @@ impl Scene {
     /// placed by the next update.
     pub fn set_bounds(&mut self, id: ObjectId, bounds: Aabb) -> bool {
         let Some(slot) = self.objects.slot(id) else { return false };
+        self.note(|| SceneEdit::SetBounds { id, bounds });
         self.set_slot_bounds(slot, bounds);
         true
     }
@@ -30,7 +32,7 @@ impl Scene {
     pub fn sync_moved(&mut self, moved: impl IntoIterator<Item = (ObjectId, Aabb)>) -> usize {
         let mut stale = 0;
         for (id, bounds) in moved {
-            if self.objects.is_plain(id) && is_surely_valid(&bounds) {
+            if self.tape.is_none() && self.objects.is_plain(id) && is_surely_valid(&bounds) {
                 self.tree.set_bounds(id.slot() as u32, &bounds);
             } else if !self.set_bounds(id, bounds) {
                 stale += 1;
@@ -43,8 +45,7 @@ impl Scene {
     /// Changes an object's optional components; false if the handle is no longer valid. O(depth).
     pub fn set_traits(&mut self, id: ObjectId, bounds: Aabb, traits: Traits) -> bool {
         let Some(slot) = self.objects.slot(id) else { return false };
-        self.objects.set_traits(slot, traits);
-        self.set_slot_bounds(slot, bounds);
+        self.change_traits(slot, bounds, traits);
         true
     }
 
@@ -59,6 +60,8 @@ impl Scene {
     /// precise again. Every box is translated, rounded outward, and the tree built anew. The app
     /// gives its own f32 positions relative to the new origin from now on. O(n log n).
     pub fn rebase(&mut self, origin: DVec3) {
+        self.note(|| SceneEdit::Rebase(origin));
+        let tape = self.tape.take();
         let shift = self.origin - origin;
         let boxes: Vec<(u32, Aabb)> =
             self.objects.slots().filter_map(|slot| Some((slot, self.tree.aabb_of(slot)?))).collect();
@@ -71,14 +74,25 @@ impl Scene {
             self.put(slot, moved);
         }
         self.update();
+        self.tape = tape;
     }
 
     pub(super) fn insert_for(&mut self, entity: Entity, bounds: Aabb, traits: Traits) -> ObjectId {
+        self.note(|| SceneEdit::Insert { bounds, traits });
         let id = self.objects.insert(entity, traits);
         self.put(id.slot() as u32, grown(bounds, traits.slack));
         id
     }
 
+    /// Gives an object other components and a box.
+    pub(super) fn change_traits(&mut self, slot: u32, bounds: Aabb, traits: Traits) {
+        let id = self.objects.id(slot);
+        self.note(|| SceneEdit::SetTraits { id, bounds, traits });
+        self.objects.set_traits(slot, traits);
+        self.set_slot_bounds(slot, bounds);
+    }
+
+    /// Gives an object a box. It is not taken down here.
     pub(super) fn set_slot_bounds(&mut self, slot: u32, bounds: Aabb) {
         let traits = self.objects.traits(slot);
         let bounds = grown(bounds, traits.slack);
@@ -95,6 +109,8 @@ impl Scene {
     }
 
     pub(super) fn remove_slot(&mut self, slot: u32) {
+        let id = self.objects.id(slot);
+        self.note(|| SceneEdit::Remove(id));
         if self.objects.place(slot) == Place::Tree {
             self.tree.remove(slot);
         }

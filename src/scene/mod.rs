@@ -22,6 +22,7 @@ mod nearest;
 mod object;
 mod objects;
 mod sync;
+mod tape;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -33,6 +34,7 @@ pub use components::{
 };
 pub use object::{ObjectId, ObjectRef, ObjectSet};
 pub use sync::{BadEdit, SyncReport};
+pub use tape::SceneEdit;
 
 use crate::Error;
 use crate::culler::Voter;
@@ -76,6 +78,10 @@ pub struct Scene {
     ballots: Vec<Votes>,
     /// Edits since the last update.
     pending: usize,
+    /// What was done, if somebody wants to know.
+    tape: Option<Vec<SceneEdit>>,
+    /// Whether anything was ever done.
+    touched: bool,
 }
 
 impl Scene {
@@ -89,6 +95,8 @@ impl Scene {
             mirror: Mirror::default(),
             ballots: Vec::new(),
             pending: 0,
+            tape: None,
+            touched: false,
         }
     }
 
@@ -136,6 +144,7 @@ impl Scene {
     /// is done for a scene without edits but to count the frame. O(edits · depth).
     pub fn update(&mut self) -> Duration {
         let start = Instant::now();
+        self.note(|| SceneEdit::Update);
         self.tree.update();
         self.pending = 0;
         start.elapsed()
@@ -159,6 +168,7 @@ impl Scene {
             std::mem::swap(&mut self.ballots[count], view.votes_mut());
             count += 1;
         }
+        self.note_votes(count);
         self.tree.adapt(self.ballots[..count].iter());
         start.elapsed()
     }

@@ -5,6 +5,7 @@ use hecs::Entity;
 /// A handle of an object in one scene: a slot and the slot's generation, so that the handle of a
 /// removed object never names the one that took its slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct ObjectId {
     slot: u32,
     generation: u32,
@@ -48,6 +49,7 @@ impl ObjectRef {
 /// A set of objects by slot: one bit each. It does not know generations; it is meant for one
 /// frame, between two edits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct ObjectSet {
     words: Vec<u64>,
 }

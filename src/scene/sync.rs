@@ -190,8 +190,7 @@ impl Scene {
         if same_traits && same_box {
             return false;
         }
-        self.objects.set_traits(slot, traits);
-        self.set_slot_bounds(slot, bounds);
+        self.change_traits(slot, bounds, traits);
         true
     }
 

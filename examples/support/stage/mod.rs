@@ -116,6 +116,14 @@ impl Stage {
         }
     }
 
+    /// Whether a recorder listens to the backend.
+    pub fn listen(&mut self, listen: bool) {
+        match self {
+            Self::Software(stage) => stage.log().listen(listen),
+            Self::Wgpu(stage) => stage.log().listen(listen),
+        }
+    }
+
     /// Whether the questions of the next frames are kept, to be shown.
     pub fn keep_questions(&mut self, keep: bool) {
         match self {

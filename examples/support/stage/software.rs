@@ -4,6 +4,7 @@ use hecs::World;
 use tercet::draw::Detail;
 use tercet::geom::View;
 use tercet::query::software::SoftwareQueries;
+use tercet::record::Logged;
 use tercet::scene::Scene;
 
 use super::{Drawn, Watched};
@@ -12,14 +13,19 @@ use crate::support::run::Eye;
 
 /// The software backend, with the renderer for its passes.
 pub struct SoftwareStage {
-    pub(super) queries: Watched<SoftwareQueries>,
+    pub(super) queries: Watched<Logged<SoftwareQueries>>,
     pub(super) painter: Painter,
 }
 
 impl SoftwareStage {
     /// Draws as finely as `detail` says.
     pub fn new(detail: Detail) -> Self {
-        Self { queries: Watched::new(SoftwareQueries::new()), painter: Painter { detail } }
+        Self { queries: Watched::new(Logged::silent(SoftwareQueries::new())), painter: Painter { detail } }
+    }
+
+    /// The backend, as a recorder listens to it.
+    pub fn log(&mut self) -> &mut Logged<SoftwareQueries> {
+        self.queries.backend()
     }
 
     /// See [`Stage::frame`](super::Stage::frame).

@@ -1,5 +1,8 @@
 //! A backend that keeps what it was asked, to be looked at.
 
+use std::collections::HashMap;
+use std::ops::Range;
+
 use tercet::Error;
 use tercet::geom::{Proxy, View};
 use tercet::query::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
@@ -15,8 +18,8 @@ pub struct Watched<B> {
 #[derive(Default)]
 struct QuestionLog {
     asked: Vec<Asked>,
-    /// By ticket: whose the boxes are in `asked`.
-    ranges: Vec<(usize, usize)>,
+    /// Whose the boxes are in `asked`, by ticket.
+    ranges: HashMap<Ticket, Range<usize>>,
 }
 
 /// A box that was asked about.
@@ -79,10 +82,9 @@ impl<B: QueryBackend> QueryBackend for Watched<B> {
 
     fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
         if let Some(log) = &mut self.log {
-            // The driver numbers a frame's questions from 0.
             let start = log.asked.len();
             log.asked.extend(boxes.iter().map(|proxy| Asked { proxy: *proxy, visible: None }));
-            log.ranges.push((start, log.asked.len()));
+            log.ranges.insert(ticket, start..log.asked.len());
         }
         self.backend.ask(ticket, boxes, want)
     }
@@ -96,19 +98,19 @@ impl<B: QueryBackend> QueryBackend for Watched<B> {
     }
 
     fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
-        if let Some(log) = &mut self.log {
-            // A sweep's boxes are not kept, but its ticket counts.
-            log.ranges.push((0, 0));
-        }
         self.backend.sweep(ticket, sweep)
     }
 
     fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
         let log = &mut self.log;
         self.backend.answers(wait, |ticket, answer| {
-            if let Some(log) = log {
-                let (start, end) = log.ranges[ticket.0 as usize];
-                log.asked[start..end].iter_mut().for_each(|asked| asked.visible = Some(answer.is_visible(0)));
+            if let Some(log) = log
+                && let Some(range) = log.ranges.get(&ticket)
+            {
+                // A sweep's boxes are not kept.
+                log.asked[range.clone()]
+                    .iter_mut()
+                    .for_each(|asked| asked.visible = Some(answer.is_visible(0)));
             }
             deliver(ticket, answer);
         })

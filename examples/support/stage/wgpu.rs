@@ -7,6 +7,7 @@ use hecs::World;
 use tercet::draw::{Detail, Renderer, Shading};
 use tercet::geom::{View, Viewport};
 use tercet::query::gpu::{FrameTargets, GpuQueries, wgpu};
+use tercet::record::Logged;
 use tercet::scene::Scene;
 use wgpu::{TextureFormat, TextureUsages, TextureView};
 
@@ -19,7 +20,7 @@ const SKY: wgpu::Color = wgpu::Color { r: 0.74, g: 0.82, b: 0.91, a: 1.0 };
 /// The wgpu backend, with a renderer and what both draw into.
 pub struct WgpuStage {
     gpu: Gpu,
-    pub(super) queries: Watched<GpuQueries>,
+    pub(super) queries: Watched<Logged<GpuQueries>>,
     renderer: Renderer,
     picture: Picture,
     pub(super) detail: Detail,
@@ -122,7 +123,7 @@ impl WgpuStage {
         let picture = Picture::new(&gpu, Viewport::new(1, 1))?;
         queries.target(&picture.targets());
         Ok(Self {
-            queries: Watched::new(queries),
+            queries: Watched::new(Logged::silent(queries)),
             renderer: Renderer::new(&gpu.device, &gpu.queue, Some(Picture::COLOR))?,
             picture,
             gpu,
@@ -133,6 +134,11 @@ impl WgpuStage {
     /// What it runs on.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// The backend, as a recorder listens to it.
+    pub fn log(&mut self) -> &mut Logged<GpuQueries> {
+        self.queries.backend()
     }
 
     /// What was drawn last.
@@ -151,7 +157,7 @@ impl WgpuStage {
     ) -> anyhow::Result<Drawn> {
         if !self.picture.fits(view.viewport()) {
             self.picture = Picture::new(&self.gpu, view.viewport())?;
-            self.queries.backend().target(&self.picture.targets());
+            self.queries.backend().backend.target(&self.picture.targets());
         }
         let Self { queries, renderer, .. } = self;
         renderer.begin(view, self.detail, Shading::Lit);

@@ -122,6 +122,10 @@ impl<P: Policy> Policy for Gated<P> {
         self.policy.asks() && (!self.has_gate() || self.state.is_open())
     }
 
+    fn asks_owners(&self) -> bool {
+        self.policy.asks_owners() && (!self.has_gate() || self.state.is_open())
+    }
+
     fn begin(&mut self, cx: &Context<'_>) {
         self.probed = false;
         let plan = match self.has_gate() {
@@ -186,6 +190,11 @@ impl<P: Policy> Policy for Gated<P> {
     fn reset(&mut self) {
         self.policy.reset();
         self.state = Gate::default();
+    }
+
+    /// What asking costs is the same elsewhere.
+    fn cut(&mut self) {
+        self.policy.cut();
     }
 
     fn vote(&mut self, votes: &mut Votes) {
