@@ -55,9 +55,9 @@ impl Rig {
         let target = if back { Vec3::Z } else { Vec3::NEG_Z };
         let view = View::look_at(Vec3::ZERO, target, 60.0, 0.1, Viewport::new(640, 360)).expect("a view");
         let frustum = Frustum::new(&view);
-        let (tree, frame, costs) = (self.scene.tree(), self.frame, self.costs);
+        let (scene, tree, frame, costs) = (&self.scene, self.scene.tree(), self.frame, self.costs);
         let tradeoff = Tradeoff::EXACT;
-        let cx = Context { tree, view: &view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
+        let cx = Context { scene, tree, view: &view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
         let (mut drawn, mut questions, mut open, mut actions) = (0, 0, Vec::new(), Vec::new());
         policy.begin(&cx);
         loop {
@@ -232,8 +232,9 @@ fn lost_answers_do_not_open_the_gate() {
     let view = View::look_at(Vec3::ZERO, Vec3::Z, 60.0, 0.1, Viewport::new(640, 360)).expect("a view");
     let frustum = Frustum::new(&view);
     for frame in 1..100 {
-        let (tree, costs, tradeoff) = (rig.scene.tree(), rig.costs, Tradeoff::EXACT);
-        let cx = Context { tree, view: &view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
+        let (scene, costs, tradeoff) = (&rig.scene, rig.costs, Tradeoff::EXACT);
+        let tree = scene.tree();
+        let cx = Context { scene, tree, view: &view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
         policy.begin(&cx);
         let mut asked: u32 = 0;
         loop {

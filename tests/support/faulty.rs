@@ -3,7 +3,7 @@
 use tercet::query::fault::{Faults, Faulty};
 use tercet::query::software::SoftwareQueries;
 
-use super::Shown;
+use crate::support::Shown;
 
 /// Answers go astray in every way.
 pub fn faulty(seed: u64) -> Faulty<SoftwareQueries> {
