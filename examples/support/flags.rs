@@ -235,7 +235,9 @@ const FLIGHT_END: Number = Number { key: "flight_end", about: "how far the camer
 /// A policy with its default dials.
 fn by_name(name: &str, gate: bool) -> anyhow::Result<Box<dyn Policy>> {
     let policy = policy::by_name(name)?;
-    Ok(if gate { Box::new(Gated::new(policy)) } else { policy })
+    // This one brings a gate of its own.
+    let has_one = policy.name() == "auto";
+    Ok(if gate && !has_one { Box::new(Gated::new(policy)) } else { policy })
 }
 
 /// The dials that a gate adds to those of a policy.

@@ -159,6 +159,9 @@ impl Run {
         top_view::write(&out, &summary, scene, view, eye)?;
         last_frame::write(&out, scene, world, view, &self.painter)?;
         println!("{}", table::table(&summary));
+        if let Some(why) = eye.policy().explanation() {
+            println!("{why}");
+        }
         println!(
             "{} frames in {:.1} s; figures and pictures are in {}",
             summary.frames,

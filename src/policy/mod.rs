@@ -5,6 +5,7 @@
 //! ([`Culler`](crate::Culler)) carries it out on whatever backend there is. So each policy runs on
 //! each backend, is tested without one, and a recorded frame replays bit for bit.
 
+mod auto;
 mod chc;
 mod chc_plus_plus;
 mod coherence;
@@ -28,6 +29,7 @@ mod stop_and_wait;
 mod two_phase;
 mod waves;
 
+pub use auto::Auto;
 pub use chc::Chc;
 pub use chc_plus_plus::{ChcPlusPlus, KeepRule};
 pub use dual_query::{DualQuery, Order};
@@ -177,6 +179,12 @@ pub trait Policy: Send + Sync {
         Vec::new()
     }
 
+    /// Why it does what it does at present, in a sentence, if there is a choice that it has made: for
+    /// statistics and windows. Nothing is put together until somebody asks.
+    fn explanation(&self) -> Option<String> {
+        None
+    }
+
     /// What it must be given before each frame, if it is a reference ([`Recorded`]).
     fn wants_recorded(&self) -> Option<Recording> {
         None
@@ -248,6 +256,10 @@ impl Policy for Box<dyn Policy> {
         (**self).counters()
     }
 
+    fn explanation(&self) -> Option<String> {
+        (**self).explanation()
+    }
+
     fn wants_recorded(&self) -> Option<Recording> {
         (**self).wants_recorded()
     }
@@ -282,6 +294,7 @@ pub const NAMES: &[&str] = &[
     "hroc",
     "hi-z",
     "hybrid",
+    "auto",
     "opt",
     "exact",
 ];
@@ -307,6 +320,7 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "hroc" => Box::new(Hroc::default()),
         "hi-z" => Box::new(HiZ::default()),
         "hybrid" => Box::new(Hybrid::default()),
+        "auto" => Box::new(Auto::default()),
         "opt" => Box::new(Recorded::new(Recording::StopAndWait)),
         "exact" => Box::new(Recorded::new(Recording::ExactSet)),
         _ => return Err(Error::UnknownPolicy { name: name.to_owned(), known: NAMES.join(", ") }),

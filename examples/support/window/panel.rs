@@ -71,6 +71,9 @@ fn policy(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
         ui.label("Policy");
         dials::choice(ui, ("policy", "name"), was, policy::NAMES)
     });
+    if let Some(why) = engine.eye.policy().explanation() {
+        ui.weak(why);
+    }
     if is.inner != was { engine.use_policy(&is.inner) } else { Ok(()) }
 }
 

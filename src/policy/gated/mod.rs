@@ -225,6 +225,10 @@ impl<P: Policy> Policy for Gated<P> {
         counters
     }
 
+    fn explanation(&self) -> Option<String> {
+        self.policy.explanation()
+    }
+
     fn wants_recorded(&self) -> Option<Recording> {
         self.policy.wants_recorded()
     }
