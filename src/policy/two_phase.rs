@@ -293,7 +293,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
         }
         self.answer = match answer {
             Answer::Swept(found) => {
-                self.found.clone_from(found);
+                self.found.assign(found.words().iter().copied());
                 Reply::Found
             }
             _ => Reply::Lost,
