@@ -85,6 +85,8 @@ pub struct TwoPhase<P> {
     pub occluder_filtering: bool,
     /// In how many parts, at most, many new objects are drawn, each swept behind those before it.
     pub parts: u32,
+    /// Whether what was visible is drawn from near to far; else by slot, the same in every view.
+    pub near_first: bool,
     /// What is asked.
     pub plan: P,
     stage: Stage,
@@ -144,17 +146,16 @@ struct Counts {
     found: u32,
 }
 
-/// New objects from which they are drawn in parts.
-const MANY: usize = 32;
-
-/// The share of the new objects that is drawn as a part: one of so many.
-const PART: usize = 4;
+/// New objects that are drawn at once in any case; the first part has so many, and each further one
+/// twice as many as the one before.
+const PART: usize = 64;
 
 impl<P: Plan> Default for TwoPhase<P> {
     fn default() -> Self {
         Self {
             occluder_filtering: true,
-            parts: 4,
+            parts: 8,
+            near_first: true,
             plan: P::default(),
             stage: Stage::Done,
             ticket: Ticket(0),
@@ -188,7 +189,6 @@ impl<P: Plan> Policy for TwoPhase<P> {
 
     fn begin(&mut self, cx: &Context<'_>) {
         self.counts = Counts::default();
-        self.parts_left = self.parts;
         self.second.clear();
         self.rest.clear();
         let First { objects, set, retest } = &mut self.first;
@@ -204,6 +204,9 @@ impl<P: Plan> Policy for TwoPhase<P> {
             }
         }
         self.counts.first = objects.len() as u32;
+        if self.near_first {
+            near_first(cx, &mut self.first.objects, &mut self.order);
+        }
         self.stage = Stage::DrawFirst;
     }
 
@@ -250,7 +253,14 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 Stage::SweepRest => {
                     self.stage = Stage::Wait;
                     let ticket = self.new_ticket();
-                    return Action::Sweep { ticket, groups: &[], loose: &self.rest, test: alone(P::TEST) };
+                    // Groups find out at once what has become hidden as a whole.
+                    let (groups, loose, test) = match P::TEST {
+                        SweepTest::Rays if self.counts.groups > 0 => {
+                            (&self.targets.groups[..], &self.targets.loose[..], P::TEST)
+                        }
+                        _ => (&[][..], &self.rest[..], alone(P::TEST)),
+                    };
+                    return Action::Sweep { ticket, groups, loose, test };
                 }
                 Stage::DrawLost(group) => {
                     if let Some(&node) = self.targets.groups.get(group) {
@@ -293,7 +303,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
         }
         self.answer = match answer {
             Answer::Swept(found) => {
-                self.found.clone_from(found);
+                self.found.assign(found.words().iter().copied());
                 Reply::Found
             }
             _ => Reply::Lost,
@@ -328,6 +338,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 self.occluder_filtering,
                 "draw first only what owned a sample in the last frame",
             ),
+            Dial::new("near_first", self.near_first, "draw what was visible from near to far, not by slot"),
             Dial::new("parts", self.parts, "parts in which many new objects are drawn, at most"),
         ];
         dials.extend(self.plan.dials());
@@ -339,6 +350,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
             "occluder_filtering" => {
                 self.occluder_filtering = dial::choice(key, value, &[("true", true), ("false", false)])?;
             }
+            "near_first" => self.near_first = dial::choice(key, value, &[("true", true), ("false", false)])?,
             "parts" => self.parts = dial::number(key, value, 1..=64)?,
             _ if self.plan.set(key, value)? => {}
             _ => return Err(dial::unknown(key, value, &self.dials())),
@@ -371,33 +383,16 @@ impl<P: Plan> TwoPhase<P> {
         } else {
             self.rest.retain(|&id| self.found.contains(id));
         }
-        self.parts_left -= 1;
-        if self.rest.len() < MANY || self.parts_left == 0 {
-            self.stage = Stage::DrawPart(self.rest.len());
-            return;
-        }
         if is_main {
-            self.sort_rest(cx);
+            // Most of what is visible is in the depth already: there is little to win.
+            let is_usual = self.rest.len() <= self.first.objects.len() / 2;
+            self.parts_left = if is_usual { 1 } else { self.parts };
+            near_first(cx, &mut self.rest, &mut self.order);
         }
-        self.stage = Stage::DrawPart(self.rest.len().div_ceil(PART));
-    }
-
-    /// Orders what was found from near to far; what hides nothing comes last.
-    fn sort_rest(&mut self, cx: &Context<'_>) {
-        let eye = cx.view.eye();
-        let store = cx.scene.objects_store();
-        let distance = |id: ObjectId| {
-            let bounds = cx.tree.aabb_of(id.slot() as u32).filter(|_| store.is_occluder(id.slot() as u32));
-            bounds.map_or(f32::INFINITY, |bounds| match eye.w {
-                0.0 => -eye.truncate().dot(bounds.center()),
-                _ => bounds.distance_squared(eye.truncate()),
-            })
-        };
-        self.order.clear();
-        self.order.extend(self.rest.iter().map(|&id| (distance(id), id)));
-        self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        self.rest.clear();
-        self.rest.extend(self.order.iter().map(|&(_, id)| id));
+        self.parts_left -= 1;
+        let part = PART.max(self.second.len());
+        let all = self.rest.len();
+        self.stage = Stage::DrawPart(if self.parts_left == 0 { all } else { part.min(all) });
     }
 
     /// The V of the next frame: what was drawn, and is still visible if that was asked, as far as it hides
@@ -409,6 +404,22 @@ impl<P: Plan> TwoPhase<P> {
         self.visible.extend(drawn.filter(|id| cx.scene.objects_store().is_occluder(id.slot() as u32)));
         self.visible.sort_unstable();
     }
+}
+
+/// Orders objects from near to far; what hides nothing comes last.
+fn near_first(cx: &Context<'_>, objects: &mut Vec<ObjectId>, order: &mut Vec<(f32, ObjectId)>) {
+    let (eye, store) = (cx.view.eye(), cx.scene.objects_store());
+    let distance = |id: ObjectId| {
+        let bounds = cx.tree.aabb_of(id.slot() as u32).filter(|_| store.is_occluder(id.slot() as u32));
+        bounds.map_or(f32::INFINITY, |bounds| match eye.w {
+            0.0 => -eye.truncate().dot(bounds.center()),
+            _ => bounds.distance_squared(eye.truncate()),
+        })
+    };
+    order.clear();
+    order.extend(objects.drain(..).map(|id| (distance(id), id)));
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    objects.extend(order.iter().map(|&(_, id)| id));
 }
 
 /// How objects are tested that have no group.
