@@ -61,6 +61,13 @@ impl Add for &Dyadic {
     type Output = Dyadic;
 
     fn add(self, other: Self) -> Dyadic {
+        // A zero's exponent says nothing, and would only lengthen the sum.
+        if self.mantissa.is_zero() {
+            return other.clone();
+        }
+        if other.mantissa.is_zero() {
+            return self.clone();
+        }
         let exponent = self.exponent.min(other.exponent);
         let raised = |n: &Dyadic| &n.mantissa << (n.exponent - exponent) as usize;
         match self.exponent.cmp(&other.exponent) {
