@@ -14,7 +14,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tercet::geom::{Aabb, Frustum, PixelRect, PlaneMask, Projected, Proxy, Question, ScreenRect, View, project};
 
-use super::dice::{self, Case};
+use super::dice;
 use super::exact::{Dyadic, ExactView, Point};
 use super::setting;
 
@@ -112,7 +112,7 @@ impl Exact {
 }
 
 /// Holds a case's answers against the exact points; the first fault found, in words.
-fn check(view: &View, case: &Case, answers: &Answers, exact: &Exact, tally: &mut Tally) -> Result<(), String> {
+fn check(view: &View, aabb: &Aabb, answers: &Answers, exact: &Exact, tally: &mut Tally) -> Result<(), String> {
     let shown = exact.all().any(Point::shows);
     tally.cases += 1;
     tally.shown += u64::from(shown);
@@ -135,7 +135,7 @@ fn check(view: &View, case: &Case, answers: &Answers, exact: &Exact, tally: &mut
         tally.asked += 1;
         check_proxy(proxy, exact, &r)?;
     }
-    measure(view, &case.aabb, answers, exact, shown, tally);
+    measure(view, aabb, answers, exact, shown, tally);
     Ok(())
 }
 
@@ -268,6 +268,15 @@ fn measure(view: &View, aabb: &Aabb, answers: &Answers, exact: &Exact, shown: bo
     tally.wide[1] += u64::from(most > 1.0);
 }
 
+/// Whether every routine holds for one box, by its corners and its centre.
+pub(crate) fn holds(view: &View, aabb: &Aabb) -> Result<(), String> {
+    let (frustum, exact_view) = (Frustum::new(view), ExactView::new(view));
+    let inner = aabb.center().clamp(aabb.min, aabb.max);
+    let exact = Exact { corners: exact_view.corners(aabb), points: vec![exact_view.point(inner)] };
+    let answers = Answers::new(aabb, view, &frustum, 3);
+    check(view, aabb, &answers, &exact, &mut Tally::default())
+}
+
 /// Boxes a view: multiplying its matrices out takes about as long as one box.
 const BOXES: u64 = 8;
 
@@ -296,7 +305,7 @@ fn sweep(
                         corners: exact_view.corners(&case.aabb),
                         points: case.points.iter().map(|&p| exact_view.point(p)).collect(),
                     };
-                    if let Err(why) = check(&view, &case, &answers, &exact, &mut tally) {
+                    if let Err(why) = check(&view, &case.aabb, &answers, &exact, &mut tally) {
                         tally.faults += 1;
                         report(format!("seed {seed}, chunk {chunk}: {why}\n{case:?}\n{view:?}\n{answers:?}"));
                     }

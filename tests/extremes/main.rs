@@ -4,6 +4,10 @@
 mod dice;
 mod differential;
 mod exact;
+mod flight;
+mod frames;
+mod geometry;
+mod strategies;
 
 /// A number from the environment, for runs that are longer or are to be repeated.
 fn setting(name: &str, default: u64) -> u64 {
