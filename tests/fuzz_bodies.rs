@@ -26,7 +26,8 @@ fn files(folder: &str, target: &str) -> Vec<PathBuf> {
 /// Runs a target over its files, and over random bytes and mutated files.
 fn drive(target: &str) {
     let files: Vec<_> = ["seeds", "regressions"].iter().flat_map(|folder| files(folder, target)).collect();
-    let inputs: Vec<Vec<u8>> = files.iter().map(|file| fs::read(file).expect("a file that can be read")).collect();
+    let inputs: Vec<Vec<u8>> =
+        files.iter().map(|file| fs::read(file).expect("a file that can be read")).collect();
     for (file, bytes) in files.iter().zip(&inputs) {
         println!("{}", file.display());
         assert!(bodies::run(target, bytes), "a target of that name");

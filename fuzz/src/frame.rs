@@ -21,7 +21,8 @@ const MOST_FRAMES: usize = 6;
 pub fn run(bytes: &[u8]) {
     let mut u = Unstructured::new(bytes);
     let name = policy::NAMES[below(&mut u, policy::NAMES.len())];
-    let tree = TreeConfig { bulk_leaf: 1 + below(&mut u, 4) as u32, unasked_leaf: 2, ..TreeConfig::default() };
+    let tree =
+        TreeConfig { bulk_leaf: 1 + below(&mut u, 4) as u32, unasked_leaf: 2, ..TreeConfig::default() };
     let mut flight = Flight {
         scene: Scene::new(SceneConfig { tree, ..SceneConfig::default() }),
         objects: Vec::new(),
@@ -110,7 +111,12 @@ impl Flight {
         eye.frame(scene, &view, queries, draw).expect("a frame");
         for object in objects.iter() {
             let drawn = eye.visible().iter().any(|o| o.id == object.id);
-            assert!(drawn || !truth.exact.contains(object.id), "{} lost {:?}", eye.policy().name(), object.id);
+            assert!(
+                drawn || !truth.exact.contains(object.id),
+                "{} lost {:?}",
+                eye.policy().name(),
+                object.id
+            );
             let bounds = scene.object(object.id).expect("it is there").bounds;
             assert!(drawn || bounds.is_some(), "what is bad is drawn always");
         }
@@ -121,7 +127,8 @@ impl Flight {
 /// The twelve triangles of a box.
 fn solid(aabb: &Aabb) -> Mesh {
     const FACES: [u32; 36] = [
-        0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
+        0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3,
+        7, 5,
     ];
     let corners: [Vec3; 8] = aabb.corners();
     Mesh::new("box", corners.to_vec(), FACES.to_vec()).expect("a box is a mesh")

@@ -100,7 +100,9 @@ impl Edited {
                 let moved: Vec<(ObjectId, Aabb)> = self
                     .held
                     .iter()
-                    .filter_map(|(&id, b)| Some((id, Aabb::new(b.as_ref()?.min + step, b.as_ref()?.max + step))))
+                    .filter_map(|(&id, b)| {
+                        Some((id, Aabb::new(b.as_ref()?.min + step, b.as_ref()?.max + step)))
+                    })
                     .collect();
                 assert_eq!(self.scene.sync_moved(moved.iter().copied()), 0);
                 for (id, aabb) in moved {
@@ -142,7 +144,8 @@ impl Edited {
             let now = self.scene.object(id).expect("it is there").bounds;
             if let (Some(was), Some(is)) = (&held, &now) {
                 let apart = (is.size().as_dvec3() - was.size().as_dvec3()).min_element();
-                let rounding = 1e-6 * (before - origin).abs().max_element().max(was.size().max_element().into());
+                let rounding =
+                    1e-6 * (before - origin).abs().max_element().max(was.size().max_element().into());
                 assert!(apart >= -rounding, "{was:?} shrank to {is:?}");
             }
             assert!(held.is_some() || now.is_none(), "a bad box was mended by nothing");

@@ -88,8 +88,15 @@ mod tests {
         let (from, to) = (1.0, -1e-17);
         let [low, high] = translated_coordinate(-1.0, from, to);
         assert!(low <= 1e-17 && 1e-17 <= high && high < 1e-16, "{low:e} to {high:e}");
-        let aabb = translated(&Aabb::new(Vec3::splat(-1.0), Vec3::splat(-1.0)), DVec3::splat(from), DVec3::splat(to));
-        assert!(aabb.is_valid() && f64::from(aabb.max.x) >= 1e-17 && f64::from(aabb.min.x) <= 1e-17, "{aabb:?}");
+        let aabb = translated(
+            &Aabb::new(Vec3::splat(-1.0), Vec3::splat(-1.0)),
+            DVec3::splat(from),
+            DVec3::splat(to),
+        );
+        assert!(
+            aabb.is_valid() && f64::from(aabb.max.x) >= 1e-17 && f64::from(aabb.min.x) <= 1e-17,
+            "{aabb:?}"
+        );
     }
 
     #[test]

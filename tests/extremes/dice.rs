@@ -156,5 +156,9 @@ fn anchor(rng: &mut impl Rng, view: &View) -> (Vec3, f32) {
     let pixel = at(x).distance(at(x + 2.0 / f64::from(view.viewport().width))) as f32;
     let place = at(x).as_vec3();
     // The far plane may be at infinity.
-    if place.abs().max_element() < 1e12 && pixel < 1e9 { (place, pixel) } else { (eye.xyz() + direction(rng) * 1e7, 1.0) }
+    if place.abs().max_element() < 1e12 && pixel < 1e9 {
+        (place, pixel)
+    } else {
+        (eye.xyz() + direction(rng) * 1e7, 1.0)
+    }
 }

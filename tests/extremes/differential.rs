@@ -12,7 +12,9 @@ use std::ops::{Add, AddAssign};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use tercet::geom::{Aabb, Frustum, PixelRect, PlaneMask, Projected, Proxy, Question, ScreenRect, View, project};
+use tercet::geom::{
+    Aabb, Frustum, PixelRect, PlaneMask, Projected, Proxy, Question, ScreenRect, View, project,
+};
 
 use super::dice;
 use super::exact::{Dyadic, ExactView, Point};
@@ -31,11 +33,16 @@ impl Answers {
     fn new(aabb: &Aabb, view: &View, frustum: &Frustum, lane: usize) -> Self {
         let crossed = frustum.classify(aabb, PlaneMask::ALL);
         let outside = !frustum.intersects(aabb);
-        let corner = |v: f32, empty: f32| std::array::from_fn::<f32, 16, _>(|i| if i == lane { v } else { empty });
+        let corner =
+            |v: f32, empty: f32| std::array::from_fn::<f32, 16, _>(|i| if i == lane { v } else { empty });
         let min = aabb.min.to_array().map(|v| corner(v, f32::INFINITY));
         let max = aabb.max.to_array().map(|v| corner(v, f32::NEG_INFINITY));
         let lanes = frustum.outside_lanes(min.each_ref(), max.each_ref(), PlaneMask::ALL);
-        assert_eq!((outside, outside), (crossed.is_none(), lanes == 1 << lane), "{aabb:?}: {lanes:b}, {crossed:?}");
+        assert_eq!(
+            (outside, outside),
+            (crossed.is_none(), lanes == 1 << lane),
+            "{aabb:?}: {lanes:b}, {crossed:?}"
+        );
         Self { outside, projected: project(aabb, view), question: Question::new(aabb, view) }
     }
 }
@@ -112,7 +119,13 @@ impl Exact {
 }
 
 /// Holds a case's answers against the exact points; the first fault found, in words.
-fn check(view: &View, aabb: &Aabb, answers: &Answers, exact: &Exact, tally: &mut Tally) -> Result<(), String> {
+fn check(
+    view: &View,
+    aabb: &Aabb,
+    answers: &Answers,
+    exact: &Exact,
+    tally: &mut Tally,
+) -> Result<(), String> {
     let shown = exact.all().any(Point::shows);
     tally.cases += 1;
     tally.shown += u64::from(shown);
@@ -204,7 +217,13 @@ fn is_over(point: &Point, rect: &PixelRect) -> bool {
 
 /// The proxy as backends evaluate it, in f32, at the pixel centres within r of a point that is
 /// shown: covered, and not farther.
-fn check_samples(view: &View, question: &Question, exact: &Exact, r: &Dyadic, tally: &mut Tally) -> Result<(), String> {
+fn check_samples(
+    view: &View,
+    question: &Question,
+    exact: &Exact,
+    r: &Dyadic,
+    tally: &mut Tally,
+) -> Result<(), String> {
     let viewport = view.viewport();
     let reach = r.about();
     for point in exact.all().filter(|point| point.shows()) {
@@ -226,10 +245,14 @@ fn check_samples(view: &View, question: &Question, exact: &Exact, r: &Dyadic, ta
                 }
                 tally.samples += 1;
                 let Question::Ask(proxy) = question else {
-                    return Err(format!("pixel ({column}, {row}) is within r of a point, and the box is outside"));
+                    return Err(format!(
+                        "pixel ({column}, {row}) is within r of a point, and the box is outside"
+                    ));
                 };
                 if !(proxy.rect.contains(column, row) && proxy.covers(column, row)) {
-                    return Err(format!("pixel ({column}, {row}) is within r of a point, and is not covered"));
+                    return Err(format!(
+                        "pixel ({column}, {row}) is within r of a point, and is not covered"
+                    ));
                 }
                 let entry = Dyadic::from(proxy.nearness(column, row));
                 if point.beyond(&point.nearness, &entry).is_positive() {
@@ -245,8 +268,11 @@ fn check_samples(view: &View, question: &Question, exact: &Exact, r: &Dyadic, ta
 fn measure(view: &View, aabb: &Aabb, answers: &Answers, exact: &Exact, shown: bool, tally: &mut Tally) {
     if exact.is_beyond() {
         tally.beyond += 1;
-        let kept =
-            [!answers.outside, answers.projected != Projected::Outside, answers.question != Question::Outside];
+        let kept = [
+            !answers.outside,
+            answers.projected != Projected::Outside,
+            answers.question != Question::Outside,
+        ];
         (0..3).for_each(|i| tally.beyond_kept[i] += u64::from(kept[i]));
     } else if shown && aabb.is_valid() && exact.is_ahead() {
         tally.ahead += 1;
@@ -327,12 +353,22 @@ fn a_million_boxes_against_exact_arithmetic() {
     let tally = sweep(cases, seed, |_| (), |fault| panic!("{fault}"));
     println!("{tally:?}");
     let Tally { beyond, beyond_kept: [frustum, rect, question], ahead, rects, wide, .. } = tally;
-    println!("of {beyond} boxes beyond a plane, kept in per cent: frustum {:.2}, project {:.2}, question {:.2}",
-        percent(frustum, beyond), percent(rect, beyond), percent(question, beyond));
-    println!("of {ahead} boxes ahead and shown: {:.2} % not projected, {:.2} % not asked about",
-        percent(tally.ahead_near, ahead), percent(tally.ahead_unasked, ahead));
-    println!("of {rects} rectangles: {:.2} % wider by over a quarter of a pixel, {:.2} % by over one",
-        percent(wide[0], rects), percent(wide[1], rects));
+    println!(
+        "of {beyond} boxes beyond a plane, kept in per cent: frustum {:.2}, project {:.2}, question {:.2}",
+        percent(frustum, beyond),
+        percent(rect, beyond),
+        percent(question, beyond)
+    );
+    println!(
+        "of {ahead} boxes ahead and shown: {:.2} % not projected, {:.2} % not asked about",
+        percent(tally.ahead_near, ahead),
+        percent(tally.ahead_unasked, ahead)
+    );
+    println!(
+        "of {rects} rectangles: {:.2} % wider by over a quarter of a pixel, {:.2} % by over one",
+        percent(wide[0], rects),
+        percent(wide[1], rects)
+    );
     // The sweep must not pass because it meets nothing.
     assert!(tally.shown * 3 > tally.cases && beyond * 20 > tally.cases, "{tally:?}");
     assert!(tally.asked * 5 > tally.cases && tally.samples * 20 > tally.cases, "{tally:?}");

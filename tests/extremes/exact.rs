@@ -23,7 +23,8 @@ impl Dyadic {
         assert!(x.is_finite(), "{x} has no exact value");
         let bits = x.to_bits();
         let (field, fraction) = ((bits >> 52 & 0x7ff) as i32, (bits & ((1 << 52) - 1)) as i64);
-        let (whole, exponent) = if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) };
+        let (whole, exponent) =
+            if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) };
         // Without trailing zeros a number stays short: an f32 has 24 bits.
         let zeros = if whole == 0 { 0 } else { whole.trailing_zeros() };
         let whole = (whole >> zeros) * if x.is_sign_negative() { -1 } else { 1 };
@@ -116,7 +117,10 @@ impl ExactView {
         let entries = |m: Mat4| m.transpose().to_cols_array().map(Dyadic::from);
         let (clip, from_world) = (entries(view.clip_from_view()), entries(view.view_from_world()));
         let entry = |row: usize, column: usize| {
-            (0..4).map(|k| &clip[4 * row + k] * &from_world[4 * k + column]).reduce(|a, b| &a + &b).expect("four")
+            (0..4)
+                .map(|k| &clip[4 * row + k] * &from_world[4 * k + column])
+                .reduce(|a, b| &a + &b)
+                .expect("four")
         };
         let viewport = view.viewport();
         Self {
@@ -138,7 +142,8 @@ impl ExactView {
     /// Where the eight corners of a box lie, in the order of [`Aabb::corners`].
     pub(crate) fn corners(&self, aabb: &Aabb) -> [Point; 8] {
         let ends = [0, 1, 2].map(|axis| [aabb.min[axis], aabb.max[axis]].map(Dyadic::from));
-        let terms = self.rows.each_ref().map(|row| [0, 1, 2].map(|k| ends[k].each_ref().map(|end| &row[k] * end)));
+        let terms =
+            self.rows.each_ref().map(|row| [0, 1, 2].map(|k| ends[k].each_ref().map(|end| &row[k] * end)));
         std::array::from_fn(|i| {
             let mut row = 0..4;
             self.placed(|coefficients| {

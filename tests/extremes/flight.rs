@@ -2,6 +2,7 @@
 //! rounds; and what every policy makes of it, against the oracle.
 
 use glam::{Affine3A, Vec3};
+use tercet::Culler;
 use tercet::geom::{Aabb, View};
 use tercet::policy::{self, Policy, Recording, StopAndWait};
 use tercet::query::oracle::{Oracle, Truth};
@@ -9,7 +10,6 @@ use tercet::query::software::{SimdLevel, SoftwarePass, SoftwareQueries};
 use tercet::scene::mesh::Mesh;
 use tercet::scene::{ObjectId, ObjectRef, Scene, SceneConfig, Traits};
 use tercet::tree::{Straddlers, TreeConfig};
-use tercet::Culler;
 
 /// What a policy did over some frames.
 #[derive(Clone, Copy, Debug, Default)]
@@ -70,7 +70,8 @@ pub(crate) struct Flight {
 impl Flight {
     pub(crate) fn new(world: &[Placed], tree: TreeConfig, policy: &str, level: SimdLevel) -> Self {
         let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
-        let objects = world.iter().map(|p| (scene.insert(p.told, Traits::default()), solid(&p.drawn))).collect();
+        let objects =
+            world.iter().map(|p| (scene.insert(p.told, Traits::default()), solid(&p.drawn))).collect();
         scene.update();
         Self {
             scene,
@@ -138,7 +139,8 @@ fn draw(objects: &[(ObjectId, Mesh)], pass: &mut SoftwarePass, refs: &[ObjectRef
 /// The twelve triangles of a box.
 pub(crate) fn solid(aabb: &Aabb) -> Mesh {
     const FACES: [u32; 36] = [
-        0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
+        0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3,
+        7, 5,
     ];
     let corners: [Vec3; 8] = aabb.corners();
     Mesh::new("box", corners.to_vec(), FACES.to_vec()).expect("a box is a mesh")
@@ -153,7 +155,12 @@ pub(crate) fn wall_and_crowd(scale: f32) -> Vec<Aabb> {
     let wall = Aabb::new(Vec3::new(-20.0, -20.0, -0.25) * scale, Vec3::new(20.0, 20.0, 0.25) * scale);
     let behind = (0..50).map(|i| {
         let part = |step: f32| (i as f32 * step).fract() * 2.0 - 1.0;
-        cube(8.0 * part(0.819_173), 8.0 * part(0.671_044), -20.0 + 16.0 * part(0.549_7), 0.1 + 0.02 * i as f32)
+        cube(
+            8.0 * part(0.819_173),
+            8.0 * part(0.671_044),
+            -20.0 + 16.0 * part(0.549_7),
+            0.1 + 0.02 * i as f32,
+        )
     });
     let along = (0..10).map(|i| cube(0.0, 0.0, -3.0 - 3.0 * i as f32, 0.5));
     let before = (0..6).map(|i| cube(-5.0 + 2.0 * i as f32, 1.0, 2.0, 0.3));

@@ -56,10 +56,12 @@ fn all_extremes_at_once() {
 #[test]
 fn boxes_touching_the_frustum_planes() {
     let viewport = Viewport::new(64, 64);
-    let square = View::new(Mat4::IDENTITY, projection::orthographic(64.0, 64.0, 0.0, 128.0), viewport).unwrap();
+    let square =
+        View::new(Mat4::IDENTITY, projection::orthographic(64.0, 64.0, 0.0, 128.0), viewport).unwrap();
     // At 90 degrees the side planes are x = ±z and y = ±z.
     let fov = std::f32::consts::FRAC_PI_2;
-    let right_angle = View::new(Mat4::IDENTITY, projection::perspective_finite(fov, 1.0, 1.0, 128.0), viewport).unwrap();
+    let right_angle =
+        View::new(Mat4::IDENTITY, projection::perspective_finite(fov, 1.0, 1.0, 128.0), viewport).unwrap();
     for size in [0.0, 1e-6, 1.0, 1e7] {
         for (plane, touching) in [
             ("left", Aabb::new(Vec3::new(-32.0 - size, -1.0, -32.0), Vec3::new(-32.0, 1.0, -32.0))),

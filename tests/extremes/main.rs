@@ -1,8 +1,10 @@
 //! Every extreme that the engine promises to bear, a named test each; and what it says about boxes
 //! against exact arithmetic.
 
+mod boxes;
 mod dice;
 mod differential;
+mod edits;
 mod exact;
 mod flight;
 mod frames;

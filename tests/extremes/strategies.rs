@@ -49,7 +49,11 @@ pub(crate) fn bad_box() -> impl Strategy<Value = Aabb> {
     let bad = prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(f32::NEG_INFINITY)];
     prop_oneof![
         (sound_box(), 0usize..6, bad).prop_map(|(mut aabb, i, bad)| {
-            if i < 3 { aabb.min[i] = bad } else { aabb.max[i - 3] = bad }
+            if i < 3 {
+                aabb.min[i] = bad
+            } else {
+                aabb.max[i - 3] = bad
+            }
             aabb
         }),
         (sound_box(), 0usize..3).prop_map(|(mut aabb, axis)| {
@@ -86,26 +90,46 @@ pub(crate) fn view(ends: Ends) -> impl Strategy<Value = View> {
     } else {
         Just(60.0).boxed()
     };
-    let side = || if ends.viewport { prop_oneof![Just(1u32), Just(Viewport::MAX_SIDE), 1..=Viewport::MAX_SIDE].boxed() } else { Just(320).boxed() };
+    let side = || {
+        if ends.viewport {
+            prop_oneof![Just(1u32), Just(Viewport::MAX_SIDE), 1..=Viewport::MAX_SIDE].boxed()
+        } else {
+            Just(320).boxed()
+        }
+    };
     let sides = (side(), side());
     let turn = (0.0f32..6.3, -1.5f32..1.5);
-    (eye, planes, fov, sides, turn, 0u8..5, 0u8..3).prop_map(|(eye, (near, ratio), fov, (width, height), turn, kind, target)| {
-        let (aspect, far) = (width as f32 / height as f32, near * ratio);
-        let fov = fov.to_radians();
-        let (clip_from_view, depth) = match kind {
-            0 => (projection::perspective(fov, aspect, near), DepthDirection::Reversed),
-            1 => (projection::perspective_finite(fov, aspect, near, far), DepthDirection::Reversed),
-            2 => (projection::perspective_standard(fov, aspect, near, far), DepthDirection::Standard),
-            3 => (projection::orthographic(50.0, 50.0, near, far), DepthDirection::Reversed),
-            _ => (projection::jittered(projection::perspective(fov, aspect, near), glam::vec2(0.4, -0.3), width, height), DepthDirection::Reversed),
-        };
-        let turn = Quat::from_rotation_x(turn.1) * Quat::from_rotation_y(turn.0);
-        let format = if target == 1 { DepthFormat::Depth24Plus } else { DepthFormat::Depth32Float };
-        let samples = if target == 2 { 4 } else { 1 };
-        View::new(Mat4::from_rotation_translation(turn, -(turn * eye)), clip_from_view, Viewport::new(width, height))
+    (eye, planes, fov, sides, turn, 0u8..5, 0u8..3).prop_map(
+        |(eye, (near, ratio), fov, (width, height), turn, kind, target)| {
+            let (aspect, far) = (width as f32 / height as f32, near * ratio);
+            let fov = fov.to_radians();
+            let (clip_from_view, depth) = match kind {
+                0 => (projection::perspective(fov, aspect, near), DepthDirection::Reversed),
+                1 => (projection::perspective_finite(fov, aspect, near, far), DepthDirection::Reversed),
+                2 => (projection::perspective_standard(fov, aspect, near, far), DepthDirection::Standard),
+                3 => (projection::orthographic(50.0, 50.0, near, far), DepthDirection::Reversed),
+                _ => (
+                    projection::jittered(
+                        projection::perspective(fov, aspect, near),
+                        glam::vec2(0.4, -0.3),
+                        width,
+                        height,
+                    ),
+                    DepthDirection::Reversed,
+                ),
+            };
+            let turn = Quat::from_rotation_x(turn.1) * Quat::from_rotation_y(turn.0);
+            let format = if target == 1 { DepthFormat::Depth24Plus } else { DepthFormat::Depth32Float };
+            let samples = if target == 2 { 4 } else { 1 };
+            View::new(
+                Mat4::from_rotation_translation(turn, -(turn * eye)),
+                clip_from_view,
+                Viewport::new(width, height),
+            )
             .expect("every one of these is a usable view")
             .with_target(depth, format, samples)
-    })
+        },
+    )
 }
 
 /// A matrix that has no inverse.
@@ -115,7 +139,8 @@ pub(crate) fn singular_matrix() -> impl Strategy<Value = Mat4> {
     (entries, 0usize..4, 0usize..4, -4i8..4).prop_map(|(entries, column, other, times)| {
         let mut m = Mat4::from_cols_array(&entries);
         // A column is a multiple of another one, by a power of two, which is exact; or zero.
-        *m.col_mut(column) = if column == other { glam::Vec4::ZERO } else { m.col(other) * 2f32.powi(times.into()) };
+        *m.col_mut(column) =
+            if column == other { glam::Vec4::ZERO } else { m.col(other) * 2f32.powi(times.into()) };
         m
     })
 }
