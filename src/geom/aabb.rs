@@ -44,6 +44,14 @@ impl Aabb {
         )
     }
 
+    /// The smallest f32 box that holds an f64 box.
+    pub(crate) fn from_bounds(min: DVec3, max: DVec3) -> Self {
+        Self::new(
+            Vec3::new(f32_below(min.x), f32_below(min.y), f32_below(min.z)),
+            Vec3::new(f32_above(max.x), f32_above(max.y), f32_above(max.z)),
+        )
+    }
+
     /// Whether all six coordinates are finite and no side is inverted.
     pub fn is_valid(&self) -> bool {
         self.min.is_finite() && self.max.is_finite() && self.min.cmple(self.max).all()

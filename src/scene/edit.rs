@@ -1,6 +1,6 @@
-//! Direct edits: insert, move, remove, rebase.
+//! Direct edits: insert, move, remove.
 
-use glam::{DVec3, Vec3A};
+use glam::Vec3A;
 use hecs::Entity;
 
 use super::Scene;
@@ -56,27 +56,6 @@ impl Scene {
         true
     }
 
-    /// Makes positions relative to another origin: near the camera of a large world, f32 is
-    /// precise again. Every box is translated, rounded outward, and the tree built anew. The app
-    /// gives its own f32 positions relative to the new origin from now on. O(n log n).
-    pub fn rebase(&mut self, origin: DVec3) {
-        self.note(|| SceneEdit::Rebase(origin));
-        let tape = self.tape.take();
-        let shift = self.origin - origin;
-        let boxes: Vec<(u32, Aabb)> =
-            self.objects.slots().filter_map(|slot| Some((slot, self.tree.aabb_of(slot)?))).collect();
-        self.origin = origin;
-        self.tree = self.tree.emptied();
-        // Histories are about nodes that are gone: cullers begin anew.
-        self.id.1 += 1;
-        for (slot, aabb) in boxes {
-            let moved = Aabb::from_f64(aabb.min.as_dvec3(), aabb.max.as_dvec3(), -shift);
-            self.put(slot, moved);
-        }
-        self.update();
-        self.tape = tape;
-    }
-
     pub(super) fn insert_for(&mut self, entity: Entity, bounds: Aabb, traits: Traits) -> ObjectId {
         self.note(|| SceneEdit::Insert { bounds, traits });
         let id = self.objects.insert(entity, traits);
@@ -119,7 +98,7 @@ impl Scene {
     }
 
     /// Keeps an object that the tree does not hold where it belongs.
-    fn put(&mut self, slot: u32, bounds: Aabb) {
+    pub(super) fn put(&mut self, slot: u32, bounds: Aabb) {
         self.pending += 1;
         let place = if !bounds.is_valid() {
             Place::Bad

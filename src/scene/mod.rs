@@ -21,6 +21,7 @@ pub(crate) mod meshlets;
 mod nearest;
 mod object;
 mod objects;
+mod rebase;
 mod sync;
 mod tape;
 

@@ -1,0 +1,20 @@
+//! Every extreme that the engine promises to bear, a named test each; and what it says about boxes
+//! against exact arithmetic.
+
+mod boxes;
+mod dice;
+mod differential;
+mod edits;
+mod exact;
+mod flight;
+mod frames;
+mod geometry;
+mod strategies;
+
+/// A number from the environment, for runs that are longer or are to be repeated.
+fn setting(name: &str, default: u64) -> u64 {
+    match std::env::var(name) {
+        Ok(text) => text.parse().unwrap_or_else(|_| panic!("{name}={text}: a whole number, please")),
+        Err(_) => default,
+    }
+}
