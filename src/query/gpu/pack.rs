@@ -1,5 +1,4 @@
-//! Questions as the shaders read them: the twins of the structs in `shaders/shared/question.wgsl`
-//! and `shaders/shared/tiles.wgsl`.
+//! Questions as the shaders read them: the twins of the structs in `shaders/shared/`.
 //!
 //! # Rounding differences err toward visible
 //!

@@ -60,11 +60,13 @@ macro_rules! shader {
     ($($part:literal),*) => {
         Shader {
             single: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/shared/depth.wgsl"),
                 $(include_str!(concat!("../../../shaders/", $part))),*
             )),
             multisampled: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/shared/depth_multisampled.wgsl"),
                 $(include_str!(concat!("../../../shaders/", $part))),*
@@ -76,16 +78,18 @@ macro_rules! shader {
 impl Default for Shaders {
     fn default() -> Self {
         Self {
-            count_fragments: shader!("count_fragments.wgsl"),
-            count_workgroups: shader!("shared/tiles.wgsl", "shared/add_lanes.wgsl", "count_workgroups.wgsl"),
+            count_fragments: shader!("shared/counts.wgsl", "shared/rectangle.wgsl", "count_fragments.wgsl"),
+            count_workgroups: shader!("shared/counts.wgsl", "shared/tiles.wgsl", "shared/add_lanes.wgsl", "count_workgroups.wgsl"),
             count_subgroups: shader!(
+                "shared/counts.wgsl",
                 "shared/tiles.wgsl",
                 "shared/add_subgroups.wgsl",
                 "count_workgroups.wgsl"
             ),
-            count_blocks: shader!("shared/tiles.wgsl", "count_blocks.wgsl"),
+            count_blocks: shader!("shared/counts.wgsl", "shared/tiles.wgsl", "count_blocks.wgsl"),
             gather_blocks: shader!("gather_blocks.wgsl"),
             ask_natively: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/ask_natively.wgsl"),
             )),
