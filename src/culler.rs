@@ -12,7 +12,7 @@ pub use why::{Holder, Why};
 
 use crate::geom::{Frustum, PlaneMask, View};
 use crate::policy::{Action, Context, Extent, Policy};
-use crate::query::{Answer, DrawTime, QueryBackend, Ticket, Wait};
+use crate::query::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait};
 use crate::scene::{ObjectId, ObjectRef, Scene};
 use crate::stats::FrameStats;
 use crate::tree::{NodeId, Votes};
@@ -99,10 +99,12 @@ impl<P: Policy> Culler<P> {
         self.frame = self.frame.wrapping_add(1).max(1);
         self.open.clear();
         self.drawn.begin(scene, self.frame);
+        self.drawn.owned = self.policy.asks_owners();
         let frustum = Frustum::new(view);
         let tradeoff = self.tradeoff;
         let (frame, costs) = (self.frame, self.costs);
-        let cx = Context { tree: scene.tree(), view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
+        let tree = scene.tree();
+        let cx = Context { scene, tree, view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
         let mut stats = FrameStats::default();
         queries.begin(view)?;
         let draw_time = queries.draw_time();
@@ -128,6 +130,16 @@ impl<P: Policy> Culler<P> {
                     stats.query_boxes += boxes.len() as u32;
                     let ticket = self.open.ask(ticket);
                     stats.query += timed(|| queries.ask(ticket, boxes, want))?;
+                }
+                Action::Sweep { ticket, groups, loose, test } => {
+                    if self.drawn.flush(queries, &mut draw, &mut stats)? || stats.queries == 0 {
+                        stats.state_changes += 2;
+                    }
+                    stats.queries += 1;
+                    stats.query_boxes += (groups.len() + loose.len()) as u32;
+                    let ticket = self.open.ask(ticket);
+                    let sweep = Sweep { scene, view, frustum: &frustum, groups, loose, test };
+                    stats.query += timed(|| queries.sweep(ticket, &sweep))?;
                 }
                 Action::Wait(wait) => {
                     stats.waves += u32::from(wait == Wait::Block);
@@ -265,6 +277,8 @@ struct DrawnList {
     /// By slot: which object was last drawn, and in which frame.
     last_drawn: Vec<(u32, u32)>,
     frame: u32,
+    /// Whether the backend is to know whose draws are whose.
+    owned: bool,
 }
 
 impl DrawnList {
@@ -351,7 +365,10 @@ impl DrawnList {
         if self.queue.is_empty() {
             return Ok(false);
         }
-        stats.draw += timed(|| queries.draw(|pass| draw(pass, &self.queue)))?;
+        stats.draw += timed(|| match self.owned {
+            true => queries.draw_objects(&self.queue, &mut *draw),
+            false => queries.draw(|pass| draw(pass, &self.queue)),
+        })?;
         self.visible.append(&mut self.queue);
         Ok(true)
     }

@@ -6,7 +6,7 @@ use hecs::{Entity, World};
 use tercet::geom::{Aabb, Proxy, View, Viewport};
 use tercet::policy::{self, DrawAll, DualQuery, FrustumOnly, Policy};
 use tercet::query::software::{SoftwarePass, SoftwareQueries};
-use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
+use tercet::query::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
 use tercet::scene::mesh::Mesh;
 use tercet::scene::{Bounds, NeverCull, NotOccluder, ObjectRef, Scene, SceneConfig, Traits};
 use tercet::tree::TreeConfig;
@@ -193,6 +193,18 @@ impl QueryBackend for Broken {
         assert!(!self.asked.contains(&ticket), "a ticket is unique within its frame");
         self.asked.push(ticket);
         self.inner.ask(ticket, boxes, want)
+    }
+
+    fn draw_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.inner.draw_objects(objects, record)
+    }
+
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        self.inner.sweep(ticket, sweep)
     }
 
     fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {

@@ -12,7 +12,7 @@ use tercet::draw::Drawable;
 use tercet::geom::{Aabb, Frustum, Proxy, Question, View, Viewport};
 use tercet::policy::{self, Action, Context, DualQuery, Fate, Policy, Samples};
 use tercet::query::software::{SoftwarePass, SoftwareQueries};
-use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
+use tercet::query::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
 use tercet::scene::mesh::Mesh;
 use tercet::scene::{ObjectId, ObjectRef, Scene, SceneConfig, SceneObject, Traits};
 use tercet::tree::{NodeId, Straddlers, TightBoxes, TreeConfig, Votes};
@@ -54,6 +54,18 @@ impl QueryBackend for Listening {
     fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
         self.asked.insert(ticket, boxes.to_vec());
         self.queries.ask(ticket, boxes, want)
+    }
+
+    fn draw_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.queries.draw_objects(objects, record)
+    }
+
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        self.queries.sweep(ticket, sweep)
     }
 
     fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {

@@ -122,7 +122,7 @@ impl<P: Policy> Culler<P> {
     /// The last frame's context.
     fn context<'a>(&'a self, scene: &'a Scene, view: &'a View, frustum: &'a Frustum) -> Context<'a> {
         let (frame, costs) = (self.frame, self.costs);
-        Context { tree: scene.tree(), view, frustum, frame, tradeoff: &self.tradeoff, costs }
+        Context { scene, tree: scene.tree(), view, frustum, frame, tradeoff: &self.tradeoff, costs }
     }
 }
 

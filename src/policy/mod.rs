@@ -38,15 +38,17 @@ pub use stop_and_wait::StopAndWait;
 
 use crate::dial::{self, Dial};
 use crate::geom::{Frustum, Proxy, View};
-use crate::query::{Answer, Ticket, Want};
-use crate::scene::ObjectId;
+use crate::query::{Answer, SweepTest, Ticket, Want};
+use crate::scene::{ObjectId, Scene};
 use crate::tree::{NodeId, Tree, Votes};
 use crate::{Costs, Counter, Error, Tradeoff};
 
 /// What a policy may look at.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<'a> {
-    /// Where things are.
+    /// What is there: who stands behind the tree's slots.
+    pub scene: &'a Scene,
+    /// Where things are: the scene's tree.
     pub tree: &'a Tree,
     /// The camera.
     pub view: &'a View,
@@ -92,6 +94,18 @@ pub enum Action<'p> {
         /// What to find out.
         want: Want,
     },
+    /// Ask about many objects at once: those at and below groups, and loose ones; see
+    /// [`Sweep`](crate::query::Sweep).
+    Sweep {
+        /// Names the question in its answer.
+        ticket: Ticket,
+        /// Nodes, none of them below another.
+        groups: &'p [NodeId],
+        /// Objects that are tested by themselves.
+        loose: &'p [ObjectId],
+        /// How to test.
+        test: SweepTest,
+    },
     /// Deliver answers to what was asked.
     Wait(Wait),
     /// The frame is complete.
@@ -111,6 +125,12 @@ pub trait Policy: Send + Sync {
     /// Whether it asks about nodes: only then are fine leaves worth their upkeep.
     fn asks(&self) -> bool {
         true
+    }
+
+    /// Whether it will ask which of the drawn objects own samples ([`SweepTest::Owners`]): what it
+    /// draws is then drawn so that this can be told.
+    fn asks_owners(&self) -> bool {
+        false
     }
 
     /// Starts a frame.
@@ -173,6 +193,10 @@ impl Policy for Box<dyn Policy> {
 
     fn asks(&self) -> bool {
         (**self).asks()
+    }
+
+    fn asks_owners(&self) -> bool {
+        (**self).asks_owners()
     }
 
     fn begin(&mut self, cx: &Context<'_>) {

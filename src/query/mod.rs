@@ -4,12 +4,15 @@
 pub mod gpu;
 pub mod oracle;
 pub mod software;
+mod sweep;
 
 use std::time::Duration;
 
+pub use sweep::{Sweep, SweepTest};
+
 use crate::Error;
 use crate::geom::{Proxy, View};
-use crate::scene::ObjectSet;
+use crate::scene::{ObjectRef, ObjectSet};
 
 /// Names a question until it is answered. A policy's tickets are unique among its open questions;
 /// the driver numbers them anew, so that a backend's are unique, from frame to frame as well.
@@ -105,11 +108,34 @@ pub trait QueryBackend {
     /// What the device reports.
     fn draw(&mut self, record: impl FnOnce(&mut Self::Pass)) -> Result<(), Error>;
 
+    /// Draws objects, so that a later [`SweepTest::Owners`] can tell which of them own samples: a
+    /// backend that can keep the record calls `record` as often as it takes, with some of the
+    /// objects each time. Others draw as ever, and answer such a sweep with [`Answer::Unknown`].
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn draw_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        mut record: impl FnMut(&mut Self::Pass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.draw(|pass| record(pass, objects))
+    }
+
     /// Asks about boxes, against everything drawn before. [`Want::Dual`] takes exactly one.
     ///
     /// # Errors
     /// What the device reports.
     fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error>;
+
+    /// Asks about many objects at once, against everything drawn before: which of those that meet the
+    /// frustum may own a sample of what would be drawn now? Answered by [`Answer::Swept`], or by
+    /// [`Answer::Unknown`]. An object that no proxy stands for (it crosses the near plane, or holds
+    /// the eye) is found.
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error>;
 
     /// Delivers answers, in any order; one a ticket. With [`Wait::Block`], all that are due.
     ///

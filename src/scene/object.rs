@@ -69,6 +69,15 @@ impl ObjectSet {
         self.words.get(id.slot() / 64).is_some_and(|w| w & (1 << (id.slot() % 64)) != 0)
     }
 
+    /// The slots of its objects, in order.
+    pub fn slots(&self) -> impl Iterator<Item = usize> {
+        self.words.iter().enumerate().flat_map(|(at, &word)| {
+            std::iter::successors(Some(word), |rest| Some(rest & (rest - 1)))
+                .take_while(|&rest| rest != 0)
+                .map(move |rest| 64 * at + rest.trailing_zeros() as usize)
+        })
+    }
+
     /// Empties the set and keeps its memory.
     pub fn clear(&mut self) {
         self.words.fill(0);

@@ -90,6 +90,7 @@ impl Script {
         self.frame += 1;
         let frustum = Frustum::new(&self.view);
         let cx = Context {
+            scene: &self.scene,
             tree: self.scene.tree(),
             view: &self.view,
             frustum: &frustum,
@@ -125,7 +126,7 @@ impl Script {
                     "wait".to_owned()
                 }
                 Action::Done => break,
-                Action::DrawObjects(_) => panic!("these policies draw nodes"),
+                Action::DrawObjects(_) | Action::Sweep { .. } => panic!("these policies draw nodes"),
             };
             tell(&line).expect("a string takes everything");
             steps += 1;

@@ -67,6 +67,7 @@ impl Row {
         let frustum = Frustum::new(&view);
         let tree = self.scene.tree();
         let cx = Context {
+            scene: &self.scene,
             tree,
             view: &view,
             frustum: &frustum,
@@ -97,7 +98,7 @@ impl Row {
                     }
                 }
                 Action::Done => break,
-                Action::DrawObjects(_) => unreachable!("nodes are drawn, not objects"),
+                Action::DrawObjects(_) | Action::Sweep { .. } => unreachable!("nodes are drawn, not objects"),
             }
         }
         told.join(" ")

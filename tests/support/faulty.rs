@@ -6,7 +6,8 @@ use rand_chacha::ChaCha8Rng;
 use tercet::Error;
 use tercet::geom::{Proxy, View};
 use tercet::query::software::{SoftwarePass, SoftwareQueries};
-use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
+use tercet::query::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
+use tercet::scene::{ObjectRef, ObjectSet};
 
 use crate::support::Shown;
 
@@ -19,10 +20,11 @@ pub struct Faulty {
 }
 
 /// An answer, kept for later.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum Kept {
     Any(bool),
     Dual(u32, u32),
+    Swept(ObjectSet),
     Unknown,
 }
 
@@ -38,14 +40,16 @@ impl Kept {
         match answer {
             Answer::Any(visible) => Self::Any(visible),
             Answer::Dual { visible, total } => Self::Dual(visible, total),
-            _ => Self::Unknown,
+            Answer::Swept(found) => Self::Swept(found.clone()),
+            Answer::Unknown => Self::Unknown,
         }
     }
 
-    fn answer(self) -> Answer<'static> {
+    fn answer(&self) -> Answer<'_> {
         match self {
-            Self::Any(visible) => Answer::Any(visible),
-            Self::Dual(visible, total) => Answer::Dual { visible, total },
+            &Self::Any(visible) => Answer::Any(visible),
+            &Self::Dual(visible, total) => Answer::Dual { visible, total },
+            Self::Swept(found) => Answer::Swept(found),
             Self::Unknown => Answer::Unknown,
         }
     }
@@ -80,6 +84,18 @@ impl QueryBackend for Faulty {
         self.inner.ask(ticket, boxes, want)
     }
 
+    fn draw_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.inner.draw_objects(objects, record)
+    }
+
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        self.inner.sweep(ticket, sweep)
+    }
+
     fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
         let mut now = Vec::new();
         let Self { inner, dice, late } = self;
@@ -91,7 +107,7 @@ impl QueryBackend for Faulty {
             match dice.random_range(0..10) {
                 0 => {}
                 1 => now.push((ticket, Kept::Unknown)),
-                2 => now.extend([answer, answer]),
+                2 => now.extend([answer.clone(), answer]),
                 3 | 4 => late.push(answer),
                 _ => now.push(answer),
             }
@@ -99,7 +115,7 @@ impl QueryBackend for Faulty {
         let due: Vec<(Ticket, Kept)> = due;
         now.extend(due);
         now.shuffle(dice);
-        now.into_iter().for_each(|(ticket, kept)| deliver(ticket, kept.answer()));
+        now.iter().for_each(|&(ticket, ref kept)| deliver(ticket, kept.answer()));
         Ok(())
     }
 

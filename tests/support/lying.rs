@@ -3,7 +3,8 @@
 use tercet::Error;
 use tercet::geom::{Proxy, View};
 use tercet::query::software::{SoftwarePass, SoftwareQueries};
-use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
+use tercet::query::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
+use tercet::scene::ObjectRef;
 
 use super::Shown;
 
@@ -38,6 +39,18 @@ impl QueryBackend for Lying {
 
     fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
         self.0.ask(ticket, boxes, want)
+    }
+
+    fn draw_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.0.draw_objects(objects, record)
+    }
+
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        self.0.sweep(ticket, sweep)
     }
 
     fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {

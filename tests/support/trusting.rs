@@ -60,7 +60,9 @@ impl Policy for Trusting {
                 Action::Draw(node, extent) => return Action::Draw(node, extent),
                 Action::Wait(wait) => return Action::Wait(wait),
                 Action::Done => return Action::Done,
-                Action::Ask { .. } | Action::DrawObjects(_) => panic!("one box a question, please"),
+                Action::Ask { .. } | Action::DrawObjects(_) | Action::Sweep { .. } => {
+                    panic!("one box a question, please")
+                }
             };
             self.policy.answer(cx, trusted, Answer::Any(false));
         }

@@ -2,7 +2,8 @@
 
 use tercet::Error;
 use tercet::geom::{Proxy, View};
-use tercet::query::{Answer, DrawTime, QueryBackend, Ticket, Wait, Want};
+use tercet::query::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
+use tercet::scene::ObjectRef;
 
 /// A backend, and the questions of its last frame if anybody wants them.
 pub struct Watched<B> {
@@ -84,6 +85,22 @@ impl<B: QueryBackend> QueryBackend for Watched<B> {
             log.ranges.push((start, log.asked.len()));
         }
         self.backend.ask(ticket, boxes, want)
+    }
+
+    fn draw_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut B::Pass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.backend.draw_objects(objects, record)
+    }
+
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        if let Some(log) = &mut self.log {
+            // A sweep's boxes are not kept, but its ticket counts.
+            log.ranges.push((0, 0));
+        }
+        self.backend.sweep(ticket, sweep)
     }
 
     fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {

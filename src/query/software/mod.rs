@@ -27,6 +27,7 @@ mod raster;
 mod setup;
 mod simd;
 mod sink;
+mod sweep;
 mod tiles;
 mod vertex;
 mod visibility;
@@ -43,12 +44,13 @@ pub(crate) use simd::prefetch;
 pub(crate) use visibility::Snapshot;
 pub use visibility::VisibilityImage;
 
-use super::{Answer, QueryBackend, Ticket, Wait, Want};
+use super::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
 use bands::Bands;
 use depth::Depth;
 use hi_z::HiZ;
+use sweep::Sweeps;
 
 /// Counters since [`QueryBackend::begin`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,6 +87,7 @@ pub struct SoftwareQueries {
     found: Vec<Found>,
     /// Questions of `asked` from here on are not answered yet.
     answered: usize,
+    sweeps: Sweeps,
     stats: SoftwareStats,
 }
 
@@ -126,6 +129,7 @@ impl SoftwareQueries {
             proxies: Vec::new(),
             found: Vec::new(),
             answered: 0,
+            sweeps: Sweeps::default(),
             stats: SoftwareStats::default(),
         }
     }
@@ -230,8 +234,16 @@ impl QueryBackend for SoftwareQueries {
         Ok(())
     }
 
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        self.sweep_now(ticket, sweep);
+        Ok(())
+    }
+
     fn answers(&mut self, _: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
         self.answer();
+        for (ticket, found) in &self.sweeps.asked {
+            deliver(*ticket, found.as_ref().map_or(Answer::Unknown, Answer::Swept));
+        }
         if self.view.is_none() {
             // No frame has begun: there is nothing to ask about.
             self.asked.iter().for_each(|asked| deliver(asked.ticket, Answer::Unknown));
@@ -261,6 +273,7 @@ impl QueryBackend for SoftwareQueries {
 
 impl SoftwareQueries {
     fn forget(&mut self) {
+        self.sweeps.asked.clear();
         self.asked.clear();
         self.proxies.clear();
         self.found.clear();
