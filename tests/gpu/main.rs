@@ -16,5 +16,6 @@ mod renderer;
 #[path = "../support/stage.rs"]
 mod stage;
 mod support;
+mod sweep;
 mod twin;
 mod wgsl;

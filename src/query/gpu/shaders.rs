@@ -14,7 +14,8 @@ pub struct Shader {
 }
 
 impl Shader {
-    fn source(&self, multisampled: bool) -> &str {
+    /// The one for a number of samples.
+    pub fn source(&self, multisampled: bool) -> &str {
         if multisampled { &self.multisampled } else { &self.single }
     }
 }
@@ -35,6 +36,14 @@ pub struct Shaders {
     pub gather_blocks: Shader,
     /// [`AnyBy::Native`](super::AnyBy::Native), for any number of samples.
     pub ask_natively: Cow<'static, str>,
+    /// Proxies from boxes, for sweeps; for any number of samples.
+    pub project: Cow<'static, str>,
+    /// [`SweepTest::Raster`](crate::query::SweepTest::Raster).
+    pub sweep_raster: Shader,
+    /// The pyramid of farthest depths.
+    pub build_pyramid: Shader,
+    /// [`SweepTest::HiZ`](crate::query::SweepTest::HiZ).
+    pub sweep_hi_z: Shader,
 }
 
 impl Shaders {
@@ -93,6 +102,14 @@ impl Default for Shaders {
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/ask_natively.wgsl"),
             )),
+            project: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
+                include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/sweep/project.wgsl"),
+            )),
+            sweep_raster: shader!("shared/verdict.wgsl", "shared/rectangle.wgsl", "sweep/raster.wgsl"),
+            build_pyramid: shader!("shared/pyramid.wgsl", "sweep/pyramid.wgsl"),
+            sweep_hi_z: shader!("shared/verdict.wgsl", "shared/pyramid.wgsl", "sweep/hi_z.wgsl"),
         }
     }
 }
