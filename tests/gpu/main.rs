@@ -6,6 +6,8 @@ mod failures;
 #[expect(dead_code, reason = "the slow rasteriser in it is for the proxies' own tests")]
 #[path = "../support/geometry.rs"]
 mod geometry;
+mod indirect;
+mod indirect_renderer;
 mod lifecycle;
 mod mutations;
 mod parallel;

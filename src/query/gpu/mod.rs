@@ -41,6 +41,7 @@
 //! | `frame` | passes are recorded, submitted once a wave, and waited for |
 //! | `batch`, `read_back` | buffers of a question pass, from upload to read-back |
 //! | `sweep` | many objects at once, from their boxes to verdicts |
+//! | `indirect` | frames that the device culls by itself |
 //! | `clock` | what passes take, by the device's own clock |
 //! | `shaders` | sources; the files are in `shaders/` |
 //! | `guard` | what the device reports, as errors instead of panics |
@@ -67,6 +68,7 @@ mod counter;
 mod frame;
 mod gather_blocks;
 mod guard;
+mod indirect;
 mod pack;
 mod questions;
 mod read_back;
@@ -82,6 +84,7 @@ use wgpu::{Adapter, Backend, Buffer, BufferDescriptor, BufferUsages, Device, Fea
 pub use wgpu;
 
 pub use counter::Counting;
+pub use indirect::{BatchMesh, IndirectBatch, IndirectConfig, IndirectCuller, IndirectStats};
 pub use shaders::{Shader, Shaders};
 pub use sweep::Level;
 pub use targets::{ColorTarget, DepthTarget, FrameTargets};

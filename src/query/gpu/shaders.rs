@@ -44,6 +44,10 @@ pub struct Shaders {
     pub build_pyramid: Shader,
     /// [`SweepTest::HiZ`](crate::query::SweepTest::HiZ).
     pub sweep_hi_z: Shader,
+    /// Which objects a list of an indirect frame holds.
+    pub select: Cow<'static, str>,
+    /// Instances and arguments of an indirect frame.
+    pub compact: Cow<'static, str>,
 }
 
 impl Shaders {
@@ -110,6 +114,11 @@ impl Default for Shaders {
             sweep_raster: shader!("shared/verdict.wgsl", "shared/rectangle.wgsl", "sweep/raster.wgsl"),
             build_pyramid: shader!("shared/pyramid.wgsl", "sweep/pyramid.wgsl"),
             sweep_hi_z: shader!("shared/verdict.wgsl", "shared/pyramid.wgsl", "sweep/hi_z.wgsl"),
+            select: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/indirect/select.wgsl"),
+            )),
+            compact: Cow::Borrowed(include_str!("../../../shaders/indirect/compact.wgsl")),
         }
     }
 }

@@ -55,7 +55,7 @@ pub(in crate::query::gpu) fn collect(scene: &Scene, boxes: &mut Vec<PackedBox>) 
 #[cfg(test)]
 impl PackedBox {
     /// Checks that a shader thinks the same of where its members lie.
-    pub(super) fn assert_layout(module: &wgpu::naga::Module) {
+    pub(in crate::query::gpu) fn assert_layout(module: &wgpu::naga::Module) {
         use std::mem::offset_of;
         crate::query::gpu::pack::tests::assert_same_layout!(module, "Box", Self, [low, kind, high, node]);
     }
