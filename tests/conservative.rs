@@ -2,6 +2,8 @@
 //! everything changes every frame, each frame against the exact oracle. Each suite also asserts
 //! that hidden things were culled, so that a policy that draws everything cannot pass.
 
+#[path = "support/dropping.rs"]
+mod dropping;
 #[path = "support/faulty.rs"]
 mod faulty;
 mod support;
@@ -13,6 +15,7 @@ mod trusting;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use dropping::Dropping;
 use faulty::Faulty;
 use rayon::prelude::*;
 use support::lying::Lying;
@@ -114,7 +117,8 @@ fn scatter(model: &mut Model, fallback: &tercet::scene::mesh::Mesh) {
 /// Whole pictures: what is not drawn leaves no trace, down to the bits of the depth buffer.
 #[test]
 fn frames_equal_those_without_culling() {
-    for name in ["dual-query", "statistical", "chc", "chc++", "stop-and-wait", "hierarchy-b", "hierarchy-d"] {
+    let asking = ["dual-query", "statistical", "chc", "chc++", "stop-and-wait", "hierarchy-b", "hierarchy-d"];
+    for name in asking.into_iter().chain(["roc", "hroc", "hi-z", "hybrid"]) {
         for seed in 0..4 {
             let mut stage = Stage::new(worlds::random(seed, 120), seed, Viewport::new(301, 203), false);
             stage.detail = Detail::FULL;
@@ -196,5 +200,27 @@ fn a_lying_backend_is_found_out() {
             all.add(run(&mut stage, TreeConfig::default(), dialled(name, 0), &mut lying, FRAMES));
         }
         assert!(all.lost > 0 && all.wrong_pixels > 0, "{name}: {all:?}");
+    }
+}
+
+/// A backend that drops one group, or one loose object, must be found out.
+#[test]
+fn a_dropped_group_or_object_is_found_out() {
+    for name in ["roc", "hroc", "hi-z", "hybrid"] {
+        for (groups, loose) in [(0, 0), (1, 0), (0, 1)] {
+            let mut all = Outcome::default();
+            for seed in 0..4 {
+                let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+                let mut policy = policy::by_name(name).expect("a policy of that name");
+                // Groups are small and many, and what is dropped is not asked about again.
+                policy.set("parts", "1").expect("a dial of that name");
+                let mut dropping = Dropping { inner: SoftwareQueries::new(), groups, loose };
+                all.add(run(&mut stage, TreeConfig::default(), policy, &mut dropping, FRAMES));
+            }
+            // The two that sweep from the root have nothing loose, but the owners' sweep, which only
+            // decides what comes first.
+            let matters = groups == 1 || (loose == 1 && matches!(name, "hroc" | "hybrid"));
+            assert_eq!(all.lost > 0, matters, "{name}, {groups} groups, {loose} loose: {all:?}");
+        }
     }
 }

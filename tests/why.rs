@@ -65,6 +65,8 @@ impl QueryBackend for Listening {
     }
 
     fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        // It says nothing of any node.
+        self.asked.insert(ticket, vec![]);
         self.queries.sweep(ticket, sweep)
     }
 
@@ -154,6 +156,9 @@ impl<P: Policy> Watch<P> {
             (Why::Near(_), Some(node)) => question(&node.bounds) == Question::Visible,
             (Why::Remembered { within, .. }, Some(_)) => within != Some(0),
             (Why::Unasked, _) => matches!(self.eye.policy().name(), "none" | "frustum"),
+            (Why::Swept { .. }, _) => {
+                matches!(self.eye.policy().name(), "roc" | "hroc" | "hi-z" | "hybrid")
+            }
             (Why::Given { .. }, _) => matches!(self.eye.policy().name(), "opt" | "exact"),
             _ => false,
         };
@@ -206,6 +211,7 @@ fn kind(why: &Why) -> &'static str {
         Why::Always { .. } => "always",
         Why::Unasked => "unasked",
         Why::Given { .. } => "given",
+        Why::Swept { .. } => "swept",
         Why::Outside => "outside",
         Why::NoSample(_) => "no sample",
         Why::Hidden(_) => "hidden",
@@ -241,7 +247,7 @@ fn every_explanation_is_true() {
             }
         }
     }
-    let all = ["always", "unasked", "given", "outside", "no sample", "hidden", "visible", "counted"];
+    let all = ["always", "unasked", "given", "swept", "outside", "no sample", "hidden", "visible", "counted"];
     for kind in all.into_iter().chain(["remembered", "hidden now", "near"]) {
         assert!(kinds.get(kind).is_some_and(|&n| n > 10), "{kind} hardly occurred: {kinds:?}");
     }

@@ -34,6 +34,12 @@ pub enum Why {
         /// Whether it is one of them.
         drawn: bool,
     },
+    /// The policy sweeps objects.
+    Swept {
+        /// Drawn: it was found, or drawn first because it was visible in the last frame. Else it was in
+        /// no answer: no sample of its box is in sight, or of that of a group that holds it.
+        drawn: bool,
+    },
     /// Culled: its box lies outside the frustum.
     Outside,
     /// Culled: the box of a node that holds it lies between the samples of the screen.
@@ -130,7 +136,7 @@ impl Why {
     /// Whether the object was drawn in the last frame.
     pub const fn is_drawn(&self) -> bool {
         match *self {
-            Self::Unknown { drawn } | Self::Given { drawn } => drawn,
+            Self::Unknown { drawn } | Self::Given { drawn } | Self::Swept { drawn } => drawn,
             Self::Gone | Self::Outside | Self::NoSample(_) | Self::Hidden(_) => false,
             Self::Always { .. }
             | Self::Unasked
@@ -172,6 +178,10 @@ impl fmt::Display for Why {
             Self::Given { drawn: false } => {
                 write!(f, "culled: it is not in the set that the policy was given")
             }
+            Self::Swept { drawn: true } => {
+                write!(f, "drawn: a sweep found it, or it was visible in the last frame")
+            }
+            Self::Swept { drawn: false } => write!(f, "culled: no sweep found it"),
             Self::Outside => write!(f, "culled: it is outside the view"),
             Self::NoSample(node) => write!(f, "culled: {node} is too small to cover a pixel's sample"),
             Self::Hidden(node) => write!(f, "culled: nothing of {node} was visible"),
@@ -204,6 +214,7 @@ fn reason_to_draw((node, fate): (Holder, Fate)) -> Option<Why> {
     match fate {
         Fate::Unasked => Some(Why::Unasked),
         Fate::Given => Some(Why::Given { drawn: true }),
+        Fate::Swept => Some(Why::Swept { drawn: true }),
         Fate::Visible { samples } => Some(Why::Visible { node, samples }),
         Fate::Remembered { within } => Some(Why::Remembered { node, within }),
         Fate::Near => Some(Why::Near(node)),
@@ -219,6 +230,7 @@ fn reason_to_cull((node, fate): (Holder, Fate)) -> Option<Why> {
         Fate::Hidden => Some(Why::Hidden(node)),
         Fate::Outside => Some(Why::NoSample(node)),
         Fate::Given => Some(Why::Given { drawn: false }),
+        Fate::Swept => Some(Why::Swept { drawn: false }),
         _ => None,
     }
 }

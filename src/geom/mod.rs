@@ -5,6 +5,7 @@
 
 mod aabb;
 mod frustum;
+mod group;
 mod outline;
 mod project;
 mod proxy;

@@ -175,6 +175,11 @@ impl Question {
     /// What to ask about a box: its proxy, if it has one. An invalid box is
     /// [`Question::Visible`]. O(1), no allocation.
     pub fn new(aabb: &Aabb, view: &View) -> Self {
+        Self::shaped(aabb, view, |_, _| {})
+    }
+
+    /// The same, for a proxy that is changed by what is known of the box on the screen.
+    pub(super) fn shaped(aabb: &Aabb, view: &View, shape: impl FnOnce(&mut Proxy, &Screen)) -> Self {
         let screen = match place(aabb, view) {
             Ok(screen) => screen,
             Err(Unprojected::Outside) => return Self::Outside,
@@ -185,12 +190,14 @@ impl Question {
             return Self::Visible;
         }
         let (local, faces) = (Local::new(&screen, rect), Faces::turned_to(view, aabb));
-        Self::Ask(Proxy {
+        let mut proxy = Proxy {
             rect,
             edges: local.edges(&faces),
             planes: local.planes(&faces, view),
             nearest: f32_above(screen.nearest + screen.depth_error).max(view.depth().cleared()),
-        })
+        };
+        shape(&mut proxy, &screen);
+        Self::Ask(proxy)
     }
 }
 

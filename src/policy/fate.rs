@@ -18,6 +18,8 @@ pub enum Fate {
     Unasked,
     /// The policy draws the objects that it was given and looks at no node.
     Given,
+    /// Its objects were swept, one by one or in groups.
+    Swept,
     /// Outside the frustum, or so small on the screen that it lies between the samples.
     Outside,
     /// Not looked at, because a node above it was not visible.
@@ -62,6 +64,7 @@ impl fmt::Display for Fate {
             Self::Unknown => write!(f, "not known"),
             Self::Unasked => write!(f, "drawn: nothing is asked"),
             Self::Given => write!(f, "drawn object by object"),
+            Self::Swept => write!(f, "swept object by object"),
             Self::Outside => write!(f, "outside the view"),
             Self::NotReached => write!(f, "below a node that was not visible"),
             Self::Hidden => write!(f, "asked: hidden"),

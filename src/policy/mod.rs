@@ -12,14 +12,19 @@ mod dual_query;
 mod fate;
 mod front;
 mod frustum;
+mod hi_z;
 mod hierarchy;
 mod history;
+mod hroc;
+mod hybrid;
 mod none;
 mod order;
 mod recorded;
+mod roc;
 mod skip;
 mod statistical;
 mod stop_and_wait;
+mod two_phase;
 mod waves;
 
 pub use chc::Chc;
@@ -27,14 +32,19 @@ pub use chc_plus_plus::{ChcPlusPlus, KeepRule};
 pub use dual_query::{DualQuery, Order};
 pub use fate::{Fate, Samples};
 pub use frustum::FrustumOnly;
+pub use hi_z::{EveryRectangle, HiZ};
 pub use hierarchy::{Coherence, Hierarchy};
 pub use history::{History, NodeState};
+pub use hroc::{Groups, Hroc};
+pub use hybrid::{Hybrid, MoversApart};
 pub use none::DrawAll;
 pub use order::ScreenTiles;
 pub use recorded::{Recorded, Recording};
+pub use roc::{EveryBox, Roc};
 pub use skip::{Share, Skip};
 pub use statistical::Statistical;
 pub use stop_and_wait::StopAndWait;
+pub use two_phase::{First, Plan, Targets, TwoPhase};
 
 use crate::dial::{self, Dial};
 use crate::geom::{Frustum, Proxy, View};
@@ -257,6 +267,10 @@ pub const NAMES: &[&str] = &[
     "hierarchy-b",
     "hierarchy-c",
     "hierarchy-d",
+    "roc",
+    "hroc",
+    "hi-z",
+    "hybrid",
     "opt",
     "exact",
 ];
@@ -278,6 +292,10 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "hierarchy-b" => Box::new(Hierarchy::new(Coherence::Updating)),
         "hierarchy-c" => Box::new(Hierarchy::new(Coherence::Propagating)),
         "hierarchy-d" => Box::new(Hierarchy::new(Coherence::Conservative)),
+        "roc" => Box::new(Roc::default()),
+        "hroc" => Box::new(Hroc::default()),
+        "hi-z" => Box::new(HiZ::default()),
+        "hybrid" => Box::new(Hybrid::default()),
         "opt" => Box::new(Recorded::new(Recording::StopAndWait)),
         "exact" => Box::new(Recorded::new(Recording::ExactSet)),
         _ => return Err(Error::UnknownPolicy { name: name.to_owned(), known: NAMES.join(", ") }),

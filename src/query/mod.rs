@@ -1,5 +1,6 @@
 //! Is it hidden? A backend owns the depth of one frame and answers questions about boxes.
 
+pub(crate) mod compact;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod oracle;

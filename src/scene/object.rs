@@ -72,10 +72,21 @@ impl ObjectSet {
     /// The slots of its objects, in order.
     pub fn slots(&self) -> impl Iterator<Item = usize> {
         self.words.iter().enumerate().flat_map(|(at, &word)| {
-            std::iter::successors(Some(word), |rest| Some(rest & (rest - 1)))
+            std::iter::successors(Some(word), |&rest| (rest != 0).then(|| rest & (rest - 1)))
                 .take_while(|&rest| rest != 0)
                 .map(move |rest| 64 * at + rest.trailing_zeros() as usize)
         })
+    }
+
+    /// Takes the place of what it held: a bit a slot.
+    pub(crate) fn assign(&mut self, words: impl Iterator<Item = u64>) {
+        self.words.clear();
+        self.words.extend(words);
+    }
+
+    /// A bit a slot.
+    pub(crate) fn words(&self) -> &[u64] {
+        &self.words
     }
 
     /// Empties the set and keeps its memory.

@@ -80,7 +80,7 @@ pub(crate) fn dual<I: Isa>(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
                         part.open &= !(visible | hidden);
                     }
                 }
-                Visit::Samples { visible, covered } => {
+                Visit::Samples { visible, covered, .. } => {
                     seen += visible.count_ones();
                     total += covered.count_ones();
                 }
@@ -92,21 +92,21 @@ pub(crate) fn dual<I: Isa>(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) {
 }
 
 /// What a walk comes by.
-enum Visit<'v, I: Isa> {
+pub(super) enum Visit<'v, I: Isa> {
     /// The children of a node; the walk goes on into those that stay open.
     Children { part: &'v mut Judged<I>, far: I::F, near: I::F },
-    /// The samples of a tile.
-    Samples { visible: Mask, covered: Mask },
+    /// The samples of the tile at a pixel.
+    Samples { at: [u32; 2], visible: Mask, covered: Mask },
 }
 
 /// What is known of the samples of sixteen rectangles.
-struct Judged<I: Isa> {
+pub(super) struct Judged<I: Isa> {
     /// Some sample may be covered.
-    open: Mask,
+    pub(super) open: Mask,
     /// Every sample is covered.
     inside: Mask,
     /// The entry nearness of no sample is above this.
-    entry_most: I::F,
+    pub(super) entry_most: I::F,
     /// The entry nearness of no sample is below this.
     entry_least: I::F,
     /// Columns and rows.
@@ -128,7 +128,7 @@ impl<I: Isa> Judged<I> {
 }
 
 /// A proxy that is asked about.
-struct Inquiry<'a, I: Isa> {
+pub(super) struct Inquiry<'a, I: Isa> {
     scene: Scene<'a>,
     proxy: &'a Proxy,
     /// Its pixels in the viewport; not empty.
@@ -139,7 +139,7 @@ struct Inquiry<'a, I: Isa> {
 
 impl<'a, I: Isa> Inquiry<'a, I> {
     #[inline(always)]
-    fn new(scene: Scene<'a>, proxy: &'a Proxy) -> Option<Self> {
+    pub(super) fn new(scene: Scene<'a>, proxy: &'a Proxy) -> Option<Self> {
         let image = scene.depth.image();
         let rect = PixelRect {
             x1: proxy.rect.x1.min(image.width()),
@@ -152,14 +152,15 @@ impl<'a, I: Isa> Inquiry<'a, I> {
 
     /// Walks what the proxy meets, coarse before fine, until `visit` says false.
     #[inline(always)]
-    fn walk(&self, mut visit: impl FnMut(Visit<'_, I>) -> bool) {
+    pub(super) fn walk(&self, mut visit: impl FnMut(Visit<'_, I>) -> bool) {
         let rect = &self.rect;
         let (first, last) = nodes(rect, TILE_BITS);
         if (last[0] - first[0] + 1) * (last[1] - first[1] + 1) <= FEW_TILES {
             for y in first[1]..=last[1] {
                 for x in first[0]..=last[0] {
-                    let (visible, covered) = self.samples(x << TILE_BITS, y << TILE_BITS);
-                    if !visit(Visit::Samples { visible, covered }) {
+                    let at = [x << TILE_BITS, y << TILE_BITS];
+                    let (visible, covered) = self.samples(at[0], at[1]);
+                    if !visit(Visit::Samples { at, visible, covered }) {
                         return;
                     }
                 }
@@ -203,8 +204,9 @@ impl<'a, I: Isa> Inquiry<'a, I> {
                     height += 1;
                     continue;
                 }
-                let (visible, covered) = self.samples(x << TILE_BITS, y << TILE_BITS);
-                if !visit(Visit::Samples { visible, covered }) {
+                let at = [x << TILE_BITS, y << TILE_BITS];
+                let (visible, covered) = self.samples(at[0], at[1]);
+                if !visit(Visit::Samples { at, visible, covered }) {
                     return;
                 }
             }
@@ -249,7 +251,7 @@ impl<'a, I: Isa> Inquiry<'a, I> {
 
     /// The samples of the tile at a pixel: those in sight, and those covered.
     #[inline(always)]
-    fn samples(&self, x: u32, y: u32) -> (Mask, Mask) {
+    pub(super) fn samples(&self, x: u32, y: u32) -> (Mask, Mask) {
         let column = I::add(I::splat(x as i32), self.lane_x);
         let row = I::add(I::splat(y as i32), self.lane_y);
         let rect = &self.rect;

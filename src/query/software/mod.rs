@@ -9,6 +9,7 @@
 //! | `setup`, `raster`, `tiles`, `walk`, `large` | triangles to samples |
 //! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
 //! | `count` | answers to questions |
+//! | `sweep` | answers to sweeps, object by object |
 //! | `visibility` | who owns each pixel of a finished frame |
 //! | `isa`, `level`, `simd` | sixteen lanes, for each instruction set |
 
@@ -40,17 +41,19 @@ use rayon::prelude::*;
 pub use depth::DepthImage;
 pub use level::SimdLevel;
 pub use pass::{DrawCall, SoftwarePass};
+pub use sweep::{Pyramid, PyramidLevel};
 pub(crate) use simd::prefetch;
 pub(crate) use visibility::Snapshot;
 pub use visibility::VisibilityImage;
 
 use super::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
+use crate::scene::ObjectRef;
 use crate::Error;
 use crate::geom::{Proxy, View};
 use bands::Bands;
 use depth::Depth;
 use hi_z::HiZ;
-use sweep::Sweeps;
+use sweep::{Owned, Sweeps};
 
 /// Counters since [`QueryBackend::begin`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,6 +69,16 @@ pub struct SoftwareStats {
     pub rasterised: u64,
     /// Boxes asked about.
     pub boxes: u64,
+    /// Sweeps, but for those about owners.
+    pub sweeps: u64,
+    /// Boxes of nodes that sweeps have tested.
+    pub sweep_nodes: u64,
+    /// Rays that went down the subtrees of groups.
+    pub rays: u64,
+    /// Objects whose own boxes sweeps have tested.
+    pub swept: u64,
+    /// Objects that sweeps have found.
+    pub flagged: u64,
 }
 
 /// The software backend: a depth buffer on the CPU and the questions put to it.
@@ -88,6 +101,7 @@ pub struct SoftwareQueries {
     /// Questions of `asked` from here on are not answered yet.
     answered: usize,
     sweeps: Sweeps,
+    owned: Owned,
     stats: SoftwareStats,
 }
 
@@ -130,6 +144,7 @@ impl SoftwareQueries {
             found: Vec::new(),
             answered: 0,
             sweeps: Sweeps::default(),
+            owned: Owned::default(),
             stats: SoftwareStats::default(),
         }
     }
@@ -161,6 +176,15 @@ impl SoftwareQueries {
         self.stats.skipped_calls += calls.len() as u64 - work.calls;
         self.stats.triangles += work.triangles;
         self.stats.rasterised += work.kept;
+    }
+
+    /// Draws what was recorded.
+    fn draw_pass(&mut self) {
+        if let Some(view) = self.view.take() {
+            let pass = std::mem::take(&mut self.pass);
+            self.rasterise(&view, pass.calls());
+            (self.view, self.pass) = (Some(view), pass);
+        }
     }
 
     /// Answers everything asked so far, against the depth as it is now.
@@ -209,6 +233,7 @@ impl QueryBackend for SoftwareQueries {
         self.hi_z.reset(&self.depth, cleared);
         self.view = Some(view.clone());
         self.forget();
+        self.owned.clear();
         self.stats = SoftwareStats::default();
         Ok(())
     }
@@ -218,11 +243,24 @@ impl QueryBackend for SoftwareQueries {
         self.answer();
         self.pass.clear();
         record(&mut self.pass);
-        if let Some(view) = self.view.take() {
-            let pass = std::mem::take(&mut self.pass);
-            self.rasterise(&view, pass.calls());
-            (self.view, self.pass) = (Some(view), pass);
+        self.draw_pass();
+        Ok(())
+    }
+
+    fn draw_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        mut record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.answer();
+        self.pass.clear();
+        let before = self.owned.calls.len();
+        for object in objects {
+            record(&mut self.pass, std::slice::from_ref(object));
+            self.owned.owners.resize(before + self.pass.calls().len(), object.id);
         }
+        self.draw_pass();
+        self.pass.drain_into(&mut self.owned.calls);
         Ok(())
     }
 
@@ -241,8 +279,8 @@ impl QueryBackend for SoftwareQueries {
 
     fn answers(&mut self, _: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
         self.answer();
-        for (ticket, found) in &self.sweeps.asked {
-            deliver(*ticket, found.as_ref().map_or(Answer::Unknown, Answer::Swept));
+        for (ticket, found) in self.sweeps.answers() {
+            deliver(ticket, found.map_or(Answer::Unknown, Answer::Swept));
         }
         if self.view.is_none() {
             // No frame has begun: there is nothing to ask about.
@@ -273,7 +311,7 @@ impl QueryBackend for SoftwareQueries {
 
 impl SoftwareQueries {
     fn forget(&mut self) {
-        self.sweeps.asked.clear();
+        self.sweeps.forget();
         self.asked.clear();
         self.proxies.clear();
         self.found.clear();

@@ -50,6 +50,11 @@ impl SoftwarePass {
         &self.calls
     }
 
+    /// Hands its draw calls over, behind others.
+    pub(crate) fn drain_into(&mut self, calls: &mut Vec<DrawCall>) {
+        calls.append(&mut self.calls);
+    }
+
     pub(crate) fn clear(&mut self) {
         self.calls.clear();
     }

@@ -15,6 +15,7 @@ use super::isa::Portable;
 use super::level::SimdLevel;
 use super::pass::DrawCall;
 use super::sink::Sink;
+use super::sweep::{self, Packet, Rays};
 use super::vertex::Screen;
 use crate::geom::{Proxy, View};
 
@@ -510,6 +511,19 @@ dispatch! {
 dispatch! {
     /// See [`count::dual`].
     dual(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) = count []
+}
+
+dispatch! {
+    /// See [`sweep::group_raster`].
+    group_raster(scene: Scene<'_>, proxy: &Proxy, rays: &mut Rays) = sweep []
+}
+dispatch! {
+    /// See [`sweep::meets`].
+    meets(scene: Scene<'_>, proxy: &Proxy, rays: &[Packet]) -> bool = sweep []
+}
+dispatch! {
+    /// See [`sweep::those_that_meet`].
+    those_that_meet(scene: Scene<'_>, proxy: &Proxy, rays: &[Packet], met: &mut Rays) = sweep []
 }
 
 /// Asks for the line of memory in which a value begins, because it will be read soon. A hint: it has

@@ -1,0 +1,433 @@
+//! What the sweeping policies have in common: two phases a frame.
+//!
+//! First what was visible in the last frame (*V*) is drawn: it is taken for what hides the rest. Then one
+//! sweep asks about the rest, object by object, and what it finds is drawn (*U*). What was found visible
+//! is the V of the next frame; with *occluder filtering*, those of it that own a sample.
+//!
+//! Conservative whatever the history: an object is culled only if it meets no frustum, or if a sweep of
+//! this very frame has not found it. V decides what comes first, and nothing else: one of it that has
+//! moved is drawn where it is now, and one that is gone is left out.
+//!
+//! *In parts.* After a cut V hides little, and nearly everything in the frustum would be found. Where many
+//! objects are found that were not visible before, the nearest of them are drawn first, and the others
+//! swept again behind those; several times, if need be. (Ours. Lee et al. name IOC, which sweeps
+//! between two depths of its hierarchy.)
+//!
+//! What hides nothing is no part of V: it is asked about in every frame.
+
+use std::fmt::Debug;
+
+use super::{Action, Answer, Context, Fate, Policy, Ticket};
+use crate::dial::{self, Dial};
+use crate::geom::PlaneMask;
+use crate::query::compact::Compaction;
+use crate::query::{SweepTest, Wait};
+use crate::scene::{ObjectId, ObjectSet};
+use crate::tree::NodeId;
+use crate::{Counter, Error};
+
+/// What a policy of two phases asks about.
+pub trait Plan: Debug + Default + Send + Sync {
+    /// The policy's name.
+    const NAME: &'static str;
+
+    /// How the sweep tests.
+    const TEST: SweepTest;
+
+    /// Chooses what the sweep is about. The objects of the first phase are drawn already; whoever wants
+    /// to know which of them are still visible adds them.
+    fn plan(&mut self, cx: &Context<'_>, first: &First, targets: &mut Targets);
+
+    /// See [`Policy::counters`].
+    fn counters(&self) -> Vec<Counter> {
+        Vec::new()
+    }
+
+    /// See [`Policy::dials`].
+    fn dials(&self) -> Vec<Dial> {
+        Vec::new()
+    }
+
+    /// Sets a dial by name; false if there is none of that name.
+    ///
+    /// # Errors
+    /// [`Error::Dial`] for a value that it does not take.
+    fn set(&mut self, _key: &str, _value: &str) -> Result<bool, Error> {
+        Ok(false)
+    }
+}
+
+/// The objects of the first phase.
+#[derive(Clone, Debug, Default)]
+pub struct First {
+    /// By slot.
+    pub objects: Vec<ObjectId>,
+    /// The same.
+    pub set: ObjectSet,
+    /// Whether the sweep must say which of them are still visible: nobody else will.
+    pub retest: bool,
+}
+
+/// What a sweep is about.
+#[derive(Clone, Debug, Default)]
+pub struct Targets {
+    /// Nodes, none of them below another.
+    pub groups: Vec<NodeId>,
+    /// Objects that are tested by themselves.
+    pub loose: Vec<ObjectId>,
+}
+
+/// A policy that draws what was visible, sweeps, and draws what is found; see the names for it in
+/// [`policy`](super).
+#[derive(Clone, Debug)]
+pub struct TwoPhase<P> {
+    /// Whether an object must own a sample to be drawn first in the next frame.
+    pub occluder_filtering: bool,
+    /// In how many parts, at most, many new objects are drawn, each swept behind those before it.
+    pub parts: u32,
+    /// What is asked.
+    pub plan: P,
+    stage: Stage,
+    /// The last sweep, and whether it was answered.
+    ticket: Ticket,
+    answer: Reply,
+    /// What the last sweep found.
+    found: ObjectSet,
+    first: First,
+    targets: Targets,
+    /// Found by the last sweep and not drawn yet, nearest first.
+    rest: Vec<ObjectId>,
+    /// Drawn in the second phase.
+    second: Vec<ObjectId>,
+    /// By distance, to be sorted.
+    order: Vec<(f32, ObjectId)>,
+    /// V.
+    visible: Vec<ObjectId>,
+    parts_left: u32,
+    compaction: Compaction,
+    counts: Counts,
+}
+
+/// What the policy does next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stage {
+    DrawFirst,
+    Sweep,
+    /// Waits for the main sweep, or for one behind a part.
+    Wait,
+    /// Looks at what was found.
+    Found,
+    /// Draws the nearest of what was found, so many, and goes on with the others.
+    DrawPart(usize),
+    SweepRest,
+    /// The main sweep was lost: draws the groups from this one on, then what is loose.
+    DrawLost(usize),
+    AskOwners,
+    WaitForOwners,
+    Remember,
+    Done,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Reply {
+    None,
+    Found,
+    Lost,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    first: u32,
+    groups: u32,
+    loose: u32,
+    sweeps: u32,
+    found: u32,
+}
+
+/// New objects from which they are drawn in parts.
+const MANY: usize = 32;
+
+/// The share of the new objects that is drawn as a part: one of so many.
+const PART: usize = 4;
+
+impl<P: Plan> Default for TwoPhase<P> {
+    fn default() -> Self {
+        Self {
+            occluder_filtering: true,
+            parts: 4,
+            plan: P::default(),
+            stage: Stage::Done,
+            ticket: Ticket(0),
+            answer: Reply::None,
+            found: ObjectSet::default(),
+            first: First::default(),
+            targets: Targets::default(),
+            rest: Vec::new(),
+            second: Vec::new(),
+            order: Vec::new(),
+            visible: Vec::new(),
+            parts_left: 0,
+            compaction: Compaction::default(),
+            counts: Counts::default(),
+        }
+    }
+}
+
+impl<P: Plan> Policy for TwoPhase<P> {
+    fn name(&self) -> &'static str {
+        P::NAME
+    }
+
+    fn needs_blocking(&self) -> bool {
+        true
+    }
+
+    fn asks_owners(&self) -> bool {
+        self.occluder_filtering
+    }
+
+    fn begin(&mut self, cx: &Context<'_>) {
+        self.counts = Counts::default();
+        self.parts_left = self.parts;
+        self.second.clear();
+        self.rest.clear();
+        let First { objects, set, retest } = &mut self.first;
+        *retest = !self.occluder_filtering;
+        objects.clear();
+        set.clear();
+        for &id in &self.visible {
+            let slot = cx.scene.objects_store().slot(id);
+            let bounds = slot.and_then(|slot| cx.tree.aabb_of(slot));
+            if bounds.is_some_and(|bounds| cx.frustum.intersects(&bounds)) {
+                objects.push(id);
+                set.insert(id);
+            }
+        }
+        self.counts.first = objects.len() as u32;
+        self.stage = Stage::DrawFirst;
+    }
+
+    fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
+        loop {
+            match self.stage {
+                Stage::DrawFirst => {
+                    self.stage = Stage::Sweep;
+                    return Action::DrawObjects(&self.first.objects);
+                }
+                Stage::Sweep => {
+                    self.targets.groups.clear();
+                    self.targets.loose.clear();
+                    self.plan.plan(cx, &self.first, &mut self.targets);
+                    self.counts.groups = self.targets.groups.len() as u32;
+                    self.counts.loose = self.targets.loose.len() as u32;
+                    if self.counts.groups + self.counts.loose == 0 {
+                        self.stage = Stage::AskOwners;
+                        continue;
+                    }
+                    self.stage = Stage::Wait;
+                    // Rays without groups: nothing but loose objects.
+                    let test = if self.counts.groups > 0 { P::TEST } else { alone(P::TEST) };
+                    let ticket = self.new_ticket();
+                    let Targets { groups, loose } = &self.targets;
+                    return Action::Sweep { ticket, groups, loose, test };
+                }
+                Stage::Wait => {
+                    self.stage = Stage::Found;
+                    return Action::Wait(Wait::Block);
+                }
+                Stage::Found => self.look_at_found(cx),
+                Stage::DrawPart(count) if count == self.rest.len() => {
+                    self.second.extend_from_slice(&self.rest);
+                    self.stage = Stage::AskOwners;
+                    return Action::DrawObjects(&self.rest);
+                }
+                Stage::DrawPart(count) => {
+                    self.second.extend(self.rest.drain(..count));
+                    self.stage = Stage::SweepRest;
+                    let drawn = self.second.len();
+                    return Action::DrawObjects(&self.second[drawn - count..]);
+                }
+                Stage::SweepRest => {
+                    self.stage = Stage::Wait;
+                    let ticket = self.new_ticket();
+                    return Action::Sweep { ticket, groups: &[], loose: &self.rest, test: alone(P::TEST) };
+                }
+                Stage::DrawLost(group) => {
+                    if let Some(&node) = self.targets.groups.get(group) {
+                        self.stage = Stage::DrawLost(group + 1);
+                        return Action::Draw(node, super::Extent::Subtree);
+                    }
+                    self.stage = Stage::AskOwners;
+                    return Action::DrawObjects(&self.targets.loose);
+                }
+                Stage::AskOwners => {
+                    self.remember(cx);
+                    if !self.occluder_filtering || self.visible.is_empty() {
+                        self.stage = Stage::Done;
+                        continue;
+                    }
+                    self.stage = Stage::WaitForOwners;
+                    let ticket = self.new_ticket();
+                    let test = SweepTest::Owners;
+                    return Action::Sweep { ticket, groups: &[], loose: &self.visible, test };
+                }
+                Stage::WaitForOwners => {
+                    self.stage = Stage::Remember;
+                    return Action::Wait(Wait::Block);
+                }
+                Stage::Remember => {
+                    // All of it, if nobody knows.
+                    if self.answer == Reply::Found {
+                        self.visible.retain(|&id| self.found.contains(id));
+                    }
+                    self.stage = Stage::Done;
+                }
+                Stage::Done => return Action::Done,
+            }
+        }
+    }
+
+    fn answer(&mut self, _cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
+        if ticket != self.ticket || self.answer != Reply::None {
+            return;
+        }
+        self.answer = match answer {
+            Answer::Swept(found) => {
+                self.found.clone_from(found);
+                Reply::Found
+            }
+            _ => Reply::Lost,
+        };
+    }
+
+    fn reset(&mut self) {
+        self.visible.clear();
+    }
+
+    fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
+        if cx.frustum.intersects(&cx.tree.bounds(node)) { Fate::Swept } else { Fate::Outside }
+    }
+
+    fn counters(&self) -> Vec<Counter> {
+        let Counts { first, groups, loose, sweeps, found } = self.counts;
+        let mut counters = vec![
+            Counter { key: "drawn_first", count: first },
+            Counter { key: "groups", count: groups },
+            Counter { key: "loose", count: loose },
+            Counter { key: "sweeps", count: sweeps },
+            Counter { key: "found", count: found },
+        ];
+        counters.extend(self.plan.counters());
+        counters
+    }
+
+    fn dials(&self) -> Vec<Dial> {
+        let mut dials = vec![
+            Dial::new(
+                "occluder_filtering",
+                self.occluder_filtering,
+                "draw first only what owned a sample in the last frame",
+            ),
+            Dial::new("parts", self.parts, "parts in which many new objects are drawn, at most"),
+        ];
+        dials.extend(self.plan.dials());
+        dials
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
+        match key {
+            "occluder_filtering" => {
+                self.occluder_filtering = dial::choice(key, value, &[("true", true), ("false", false)])?;
+            }
+            "parts" => self.parts = dial::number(key, value, 1..=64)?,
+            _ if self.plan.set(key, value)? => {}
+            _ => return Err(dial::unknown(key, value, &self.dials())),
+        }
+        Ok(())
+    }
+}
+
+impl<P: Plan> TwoPhase<P> {
+    fn new_ticket(&mut self) -> Ticket {
+        self.ticket = Ticket(self.ticket.0.wrapping_add(1));
+        self.answer = Reply::None;
+        self.counts.sweeps += 1;
+        self.ticket
+    }
+
+    /// Decides what to draw of what the last sweep found.
+    fn look_at_found(&mut self, cx: &Context<'_>) {
+        let is_main = self.second.is_empty() && self.rest.is_empty();
+        if self.answer != Reply::Found {
+            self.stage = if is_main { Stage::DrawLost(0) } else { Stage::DrawPart(self.rest.len()) };
+            return;
+        }
+        if is_main {
+            self.compaction.list(cx.scene, &self.found, &mut self.rest);
+            self.rest.retain(|&id| !self.first.set.contains(id));
+            if self.first.retest {
+                self.first.objects.retain(|&id| self.found.contains(id));
+            }
+        } else {
+            self.rest.retain(|&id| self.found.contains(id));
+        }
+        self.parts_left -= 1;
+        if self.rest.len() < MANY || self.parts_left == 0 {
+            self.stage = Stage::DrawPart(self.rest.len());
+            return;
+        }
+        if is_main {
+            self.sort_rest(cx);
+        }
+        self.stage = Stage::DrawPart(self.rest.len().div_ceil(PART));
+    }
+
+    /// Orders what was found from near to far; what hides nothing comes last.
+    fn sort_rest(&mut self, cx: &Context<'_>) {
+        let eye = cx.view.eye();
+        let store = cx.scene.objects_store();
+        let distance = |id: ObjectId| {
+            let bounds = cx.tree.aabb_of(id.slot() as u32).filter(|_| store.is_occluder(id.slot() as u32));
+            bounds.map_or(f32::INFINITY, |bounds| match eye.w {
+                0.0 => -eye.truncate().dot(bounds.center()),
+                _ => bounds.distance_squared(eye.truncate()),
+            })
+        };
+        self.order.clear();
+        self.order.extend(self.rest.iter().map(|&id| (distance(id), id)));
+        self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.rest.clear();
+        self.rest.extend(self.order.iter().map(|&(_, id)| id));
+    }
+
+    /// The V of the next frame: what was drawn, and is still visible if that was asked, as far as it hides
+    /// anything. By slot: what lies at the same depth does not flicker.
+    fn remember(&mut self, cx: &Context<'_>) {
+        self.counts.found = self.second.len() as u32;
+        self.visible.clear();
+        let drawn = self.first.objects.iter().chain(&self.second);
+        self.visible.extend(drawn.filter(|id| cx.scene.objects_store().is_occluder(id.slot() as u32)));
+        self.visible.sort_unstable();
+    }
+}
+
+/// How objects are tested that have no group.
+const fn alone(test: SweepTest) -> SweepTest {
+    match test {
+        SweepTest::HiZ => SweepTest::HiZ,
+        _ => SweepTest::Raster,
+    }
+}
+
+/// The own objects of a node that meet the frustum, by slot.
+pub(super) fn each_own(cx: &Context<'_>, node: NodeId, mut found: impl FnMut(u32)) {
+    let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), PlaneMask::ALL) else { return };
+    for block in cx.tree.own(node) {
+        let outside = cx.frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
+        for (lane, &slot) in block.slots.iter().enumerate() {
+            if slot != u32::MAX && outside & (1 << lane) == 0 {
+                found(slot);
+            }
+        }
+    }
+}
