@@ -76,17 +76,16 @@ fn slots(gpu: &Gpu, draws: &[Draw]) -> Vec<Vec<u32>> {
         .collect()
 }
 
-/// Runs a world; `seed` decides what happens to it.
+/// Runs a world; `seed` decides what happens to it. The view may have seen other ones.
 pub fn run(
     gpu: &Gpu,
-    config: &IndirectConfig,
+    eye: &mut IndirectCuller,
     (model, seed): (Model, u64),
     (format, samples): (DepthFormat, u32),
     outcome: &mut Outcome,
 ) {
     let mut stage = Stage::new(model, seed, SCREEN, true);
     let mut scene = Scene::new(SceneConfig::default());
-    let mut eye = IndirectCuller::new(&gpu.device, &gpu.queue, config.clone()).expect("a view");
     let mut renderer = Renderer::new(gpu);
     for frame in 0..FRAMES {
         let view = stage.next(frame);
@@ -129,6 +128,10 @@ pub fn run(
     }
 }
 
+fn view(gpu: &Gpu, config: IndirectConfig) -> IndirectCuller {
+    IndirectCuller::new(&gpu.device, &gpu.queue, config).expect("a view")
+}
+
 fn config(test: SweepTest) -> IndirectConfig {
     IndirectConfig { test, ..IndirectConfig::default() }
 }
@@ -138,16 +141,17 @@ fn random_worlds() {
     for gpu in gpus() {
         for test in [SweepTest::HiZ, SweepTest::Raster] {
             for &samples in gpu.sample_counts() {
+                let mut eye = view(&gpu, config(test));
                 let mut all = Outcome::default();
-                for seed in 0..4 {
+                for seed in 0..3 {
                     let formats = [DepthFormat::Depth32Float, DepthFormat::Depth24Plus];
                     let target = (formats[seed as usize % 2], samples);
-                    run(&gpu, &config(test), (worlds::random(seed, 120), seed), target, &mut all);
+                    run(&gpu, &mut eye, (worlds::random(seed, 120), seed), target, &mut all);
                 }
                 let what = format!("{:?}, {test:?}, {samples} samples", gpu.backend);
                 println!("{what}: {all:?}");
                 assert_eq!((all.lost, all.wrong, all.disorder), (0, 0, 0), "{what}: {all:?}");
-                assert!(all.hidden.min(all.visible) > 400, "there are things to hide: {all:?}");
+                assert!(all.hidden.min(all.visible) > 300, "there are things to hide: {all:?}");
                 assert!(all.culled * 3 > all.hidden, "{what} culled little: {all:?}");
                 assert!(all.drawn.iter().all(|&drawn| drawn > 0), "{what}: {all:?}");
             }
@@ -160,11 +164,12 @@ fn random_worlds() {
 fn pathological_worlds() {
     for gpu in gpus() {
         let mut all = Outcome::default();
+        let tests = [SweepTest::HiZ, SweepTest::Raster];
+        let mut eyes = tests.map(|test| view(&gpu, config(test)));
         for (kind, seed) in Pathology::ALL.into_iter().zip(0..) {
-            let tests = [SweepTest::HiZ, SweepTest::Raster];
-            for (&samples, test) in gpu.sample_counts().iter().zip(tests) {
+            for (&samples, eye) in gpu.sample_counts().iter().zip(&mut eyes) {
                 let target = (DepthFormat::Depth32Float, samples);
-                run(&gpu, &config(test), (worlds::pathological(kind), seed), target, &mut all);
+                run(&gpu, eye, (worlds::pathological(kind), seed), target, &mut all);
                 assert_eq!((all.lost, all.wrong, all.disorder), (0, 0, 0), "{kind:?}: {all:?}");
             }
         }
@@ -198,7 +203,7 @@ fn only_what_has_changed_is_uploaded() {
         };
         let ids: Vec<_> = (0..1600).map(|i| scene.insert(at(i, 0.0), traits(i as u32 % 3))).collect();
         scene.update();
-        let mut eye = IndirectCuller::new(&gpu.device, &gpu.queue, config(SweepTest::HiZ)).expect("a view");
+        let mut eye = view(&gpu, config(SweepTest::HiZ));
         let first = frame(&gpu, &mut eye, &scene, 3).expect("a frame");
         assert_eq!(first.objects, 1600);
         // A box of 32 bytes, a slot and a mesh each, and the meshes.
@@ -215,7 +220,7 @@ fn only_what_has_changed_is_uploaded() {
 #[test]
 fn an_object_without_a_mesh_is_an_error() {
     for gpu in gpus() {
-        let mut eye = IndirectCuller::new(&gpu.device, &gpu.queue, config(SweepTest::HiZ)).expect("a view");
+        let mut eye = view(&gpu, config(SweepTest::HiZ));
         for wrong in [Traits::default(), traits(2)] {
             let mut scene = Scene::new(SceneConfig::default());
             frame(&gpu, &mut eye, &scene, 2).expect("an empty scene is a frame");
@@ -240,7 +245,7 @@ fn counters_come_back_on_demand() {
         insert(20.0, Traits { not_occluder: true, ..traits(0) });
         scene.update();
         let config = IndirectConfig { counters: true, ..config(SweepTest::Raster) };
-        let mut eye = IndirectCuller::new(&gpu.device, &gpu.queue, config).expect("a view");
+        let mut eye = view(&gpu, config);
         let mut found = Vec::new();
         for _ in 0..9 {
             found.push(frame(&gpu, &mut eye, &scene, 2).expect("a frame").drawn);

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::Mat4;
 use hecs::{Entity, World};
 use tercet::draw::{Detail, Drawable};
-use tercet::geom::View;
+use tercet::geom::{DepthDirection, DepthFormat, View};
 use tercet::query::gpu::{BatchMesh, IndirectBatch};
 use tercet::scene::{Batch, ObjectSet, Scene};
 use wgpu::util::DeviceExt;
@@ -30,6 +30,8 @@ pub struct Renderer<'g> {
     pub meshes: Vec<BatchMesh>,
     positions: Vec<u8>,
     indices: Vec<u8>,
+    /// By direction, format and samples of the depth, and whether they write it.
+    pipelines: HashMap<(bool, bool, u32, bool), wgpu::RenderPipeline>,
     frame: Option<Frame>,
 }
 
@@ -63,7 +65,17 @@ impl<'g> Renderer<'g> {
             ],
         });
         let (known, meshes) = (HashMap::new(), Vec::new());
-        Self { gpu, module, layout, known, meshes, positions: vec![], indices: vec![], frame: None }
+        Self {
+            gpu,
+            module,
+            layout,
+            known,
+            meshes,
+            positions: vec![],
+            indices: vec![],
+            pipelines: HashMap::new(),
+            frame: None,
+        }
     }
 
     /// Gives every entity the batch of the level of detail that it is drawn with; before the scene is
@@ -92,6 +104,7 @@ impl<'g> Renderer<'g> {
 
     /// Uploads where everything stands; after the scene was brought up to date.
     pub fn prepare(&mut self, world: &World, scene: &Scene, view: &View) {
+        let pipelines = [false, true].map(|writes| self.pipeline(view, writes));
         let device = &self.gpu.device;
         let mut matrices = vec![[0.0f32; 16]; scene.slot_bound().max(1)];
         for object in scene.objects() {
@@ -103,8 +116,10 @@ impl<'g> Renderer<'g> {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
         };
         let clip_from_world = (view.clip_from_view() * view.view_from_world()).to_cols_array();
-        let uniforms =
-            buffer(clip_from_world.into_iter().flat_map(f32::to_le_bytes).collect(), wgpu::BufferUsages::UNIFORM);
+        let uniforms = buffer(
+            clip_from_world.into_iter().flat_map(f32::to_le_bytes).collect(),
+            wgpu::BufferUsages::UNIFORM,
+        );
         let slots = (0..matrices.len() as u32).flat_map(u32::to_le_bytes).collect();
         let matrices = matrices.into_iter().flatten().flat_map(f32::to_le_bytes).collect();
         let matrices = buffer(matrices, wgpu::BufferUsages::STORAGE);
@@ -121,7 +136,7 @@ impl<'g> Renderer<'g> {
             indices: buffer(self.indices.clone(), wgpu::BufferUsages::INDEX),
             slots: buffer(slots, wgpu::BufferUsages::VERTEX),
             bindings,
-            pipelines: [false, true].map(|writes| self.pipeline(view, writes)),
+            pipelines,
         });
     }
 
@@ -201,39 +216,12 @@ impl<'g> Renderer<'g> {
         (seen, depth)
     }
 
-    fn pipeline(&self, view: &View, writes: bool) -> wgpu::RenderPipeline {
-        let device = &self.gpu.device;
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&self.layout)],
-            immediate_size: 0,
-        });
-        let attribute =
-            |format, shader_location| wgpu::VertexAttribute { format, offset: 0, shader_location };
-        let (position, slot) =
-            (attribute(wgpu::VertexFormat::Float32x3, 0), attribute(wgpu::VertexFormat::Uint32, 1));
-        let buffer = |array_stride, step_mode, attributes| {
-            Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes })
-        };
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: None,
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &self.module,
-                entry_point: Some("main"),
-                compilation_options: Default::default(),
-                buffers: &[
-                    buffer(12, wgpu::VertexStepMode::Vertex, &[position]),
-                    buffer(4, wgpu::VertexStepMode::Instance, &[slot]),
-                ],
-            },
-            primitive: Default::default(),
-            depth_stencil: Some(depth_state(view, writes)),
-            multisample: wgpu::MultisampleState { count: view.samples(), ..Default::default() },
-            fragment: None,
-            multiview_mask: None,
-            cache: None,
-        })
+    fn pipeline(&mut self, view: &View, writes: bool) -> wgpu::RenderPipeline {
+        let (reversed, float) =
+            (view.depth() == DepthDirection::Reversed, view.format() == DepthFormat::Depth32Float);
+        let Self { gpu, module, layout, pipelines, .. } = self;
+        let make = || pipeline(gpu, module, layout, view, writes);
+        pipelines.entry((reversed, float, view.samples(), writes)).or_insert_with(make).clone()
     }
 }
 
@@ -244,4 +232,46 @@ impl Frame {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
     }
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    layout: &wgpu::BindGroupLayout,
+    view: &View,
+    writes: bool,
+) -> wgpu::RenderPipeline {
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    let attribute = |format, shader_location| wgpu::VertexAttribute { format, offset: 0, shader_location };
+    let (position, slot) =
+        (attribute(wgpu::VertexFormat::Float32x3, 0), attribute(wgpu::VertexFormat::Uint32, 1));
+    let (position, slot) = ([position], [slot]);
+    let buffer = |array_stride, step_mode, attributes| wgpu::VertexBufferLayout {
+        array_stride,
+        step_mode,
+        attributes,
+    };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("main"),
+            compilation_options: Default::default(),
+            buffers: &[
+                Some(buffer(12, wgpu::VertexStepMode::Vertex, &position)),
+                Some(buffer(4, wgpu::VertexStepMode::Instance, &slot)),
+            ],
+        },
+        primitive: Default::default(),
+        depth_stencil: Some(depth_state(view, writes)),
+        multisample: wgpu::MultisampleState { count: view.samples(), ..Default::default() },
+        fragment: None,
+        multiview_mask: None,
+        cache: None,
+    })
 }

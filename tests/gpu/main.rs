@@ -3,7 +3,6 @@
 mod adapters;
 mod conservative;
 mod failures;
-#[expect(dead_code, reason = "the slow rasteriser in it is for the proxies' own tests")]
 #[path = "../support/geometry.rs"]
 mod geometry;
 mod indirect;

@@ -11,7 +11,7 @@ use tercet::query::{Answer, QueryBackend, Sweep, SweepTest, Ticket, Wait};
 use tercet::scene::{ObjectId, ObjectSet, Scene, SceneConfig, Traits};
 
 use crate::geometry::{Case, Sample, random_case};
-use crate::support::{Gpu, clip, Nearness, depth_of, gpus, targets};
+use crate::support::{Gpu, Nearness, clip, depth_of, gpus, targets};
 use crate::twin::{Convention, conventions, occluders, plain_any, view_of};
 
 /// What a comparison met.

@@ -99,7 +99,13 @@ impl Compact {
     }
 
     /// Records the making of a list, of so many objects and meshes, from what was selected.
-    pub(super) fn record(&self, tape: &mut Tape<'_>, parts: &Parts<'_>, [objects, meshes]: [u32; 2], to: &List) {
+    pub(super) fn record(
+        &self,
+        tape: &mut Tape<'_>,
+        parts: &Parts<'_>,
+        [objects, meshes]: [u32; 2],
+        to: &List,
+    ) {
         let Parts { order, mesh_of, meshes: all, before } = parts.clone();
         let instances = exactly(&to.instances, objects, size_of::<u32>());
         let arguments = exactly(&to.arguments, meshes, ARGUMENTS as usize);

@@ -26,9 +26,7 @@ mod order;
 mod select;
 
 use bytemuck::bytes_of;
-use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, Queue, RenderPass, TextureView,
-};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, Queue, RenderPass, TextureView};
 
 use super::clock::Tape;
 use super::counter::compiled;

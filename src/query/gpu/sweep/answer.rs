@@ -120,7 +120,11 @@ impl Sweeps {
 
 impl GpuQueries {
     /// Records a sweep against what has been drawn so far. What the device cannot hold is unknown.
-    pub(in crate::query::gpu) fn record_sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+    pub(in crate::query::gpu) fn record_sweep(
+        &mut self,
+        ticket: Ticket,
+        sweep: &Sweep<'_>,
+    ) -> Result<(), Error> {
         self.bind_sweeps()?;
         // Nobody here knows whose draws are whose.
         let recorded = match sweep.test {
@@ -137,7 +141,11 @@ impl GpuQueries {
 
     /// Records the passes of a sweep, without a test only those that make proxies; returns which
     /// sweep it is.
-    pub(super) fn record_looks(&mut self, sweep: &Sweep<'_>, test: Option<SweepTest>) -> Result<usize, Error> {
+    pub(super) fn record_looks(
+        &mut self,
+        sweep: &Sweep<'_>,
+        test: Option<SweepTest>,
+    ) -> Result<usize, Error> {
         self.bind_sweeps()?;
         let (device, queue) = (&self.device, &self.queue);
         let frame = self.frame.as_mut().expect("sweeps are bound in a frame");

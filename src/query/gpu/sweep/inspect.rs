@@ -60,7 +60,8 @@ impl GpuQueries {
         guard::guarded(&self.device, || {
             let fits = pyramid.resize(&self.device, frame.view.viewport());
             pyramid.record(&mut frame::tape(&mut frame.encoder, &self.device, &mut self.clock), &bound.frame);
-            fits.then_some(()).ok_or_else(|| guard::failed("it cannot bind the pyramid of so large a viewport"))
+            fits.then_some(())
+                .ok_or_else(|| guard::failed("it cannot bind the pyramid of so large a viewport"))
         })??;
         let (sizes, buffer) = pyramid.levels().expect("it was recorded");
         let (sizes, buffer) = (sizes.to_vec(), buffer.clone());

@@ -69,7 +69,8 @@ pub(super) struct Bound {
 impl Passes {
     pub(super) fn new(device: &Device, shaders: &Shaders, multisampled: bool) -> Result<Self, Error> {
         let limits = device.limits();
-        if limits.max_storage_buffers_per_shader_stage < 4 || limits.max_compute_workgroups_per_dimension == 0 {
+        if limits.max_storage_buffers_per_shader_stage < 4 || limits.max_compute_workgroups_per_dimension == 0
+        {
             return Err(failed("it has no compute shaders with four storage buffers: sweeps need them"));
         }
         guarded(device, || {
@@ -112,7 +113,12 @@ impl Passes {
 }
 
 /// A stage that computes.
-pub(super) fn compute(device: &Device, layouts: &Layouts, module: &ShaderModule, entry: &str) -> ComputePipeline {
+pub(super) fn compute(
+    device: &Device,
+    layouts: &Layouts,
+    module: &ShaderModule,
+    entry: &str,
+) -> ComputePipeline {
     device.create_compute_pipeline(&ComputePipelineDescriptor {
         label: Some("tercet sweep"),
         layout: Some(&layouts.pipeline),

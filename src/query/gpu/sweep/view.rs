@@ -44,7 +44,8 @@ impl PackedView {
         let at_origin = view.clip_error(DVec3::ZERO);
         let along = |axis| view.clip_error(axis) - at_origin;
         let error = DMat4::from_cols(along(DVec3::X), along(DVec3::Y), along(DVec3::Z), at_origin) * SHARE;
-        let farthest = view.clip_error(DVec3::splat(f64::from(FARTHEST))).max_element() / (16.0 * f64::from(UNIT));
+        let farthest =
+            view.clip_error(DVec3::splat(f64::from(FARTHEST))).max_element() / (16.0 * f64::from(UNIT));
         let world = *view.world_from_clip();
         let scale = world.to_cols_array().into_iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let (step_share, step) = match view.format() {
