@@ -1,5 +1,7 @@
 //! Everything that can go wrong, each with what to do next.
 
+use crate::scene::{Batch, ObjectRef};
+
 /// An error of the engine. Bad *edits* are not errors: they are reported by
 /// `SyncReport`, and the object is drawn always.
 #[derive(Debug, thiserror::Error)]
@@ -69,6 +71,18 @@ pub enum Error {
     Recording {
         /// What is wrong, and what would be right.
         why: String,
+    },
+    /// An object that the device is to draw, and does not know how.
+    #[error(
+        "{object:?} cannot be drawn by the device: its Batch is {batch:?}, and there are {meshes} meshes"
+    )]
+    Batch {
+        /// The object.
+        object: ObjectRef,
+        /// Its component.
+        batch: Option<Batch>,
+        /// How many meshes were handed in.
+        meshes: usize,
     },
     /// A policy of a name that does not exist.
     #[error("there is no policy {name:?}; the policies are {known}")]

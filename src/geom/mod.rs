@@ -19,5 +19,7 @@ pub use outline::ScreenOutline;
 pub(crate) use project::uncertainty;
 pub use project::{Projected, ScreenRect, project};
 pub use proxy::{PixelRect, Proxy, Question};
+#[cfg(feature = "gpu")]
+pub(crate) use silhouette::SILHOUETTES;
 pub(crate) use support::Support;
 pub use view::{DepthDirection, DepthFormat, View, Viewport, projection};

@@ -8,15 +8,15 @@
 /// The outline's edges, two along each of `len` axes, each from the corner with the lesser
 /// coordinate to that with the greater (indices as in [`Aabb::corners`](super::Aabb::corners)).
 #[derive(Clone, Copy)]
-pub(super) struct Silhouette {
-    pub(super) pairs: [[[usize; 2]; 2]; 3],
-    pub(super) len: usize,
+pub(crate) struct Silhouette {
+    pub(crate) pairs: [[[usize; 2]; 2]; 3],
+    pub(crate) len: usize,
 }
 
 /// For each combination of turned faces: entry `t[0] + 3·t[1] + 9·t[2]`, where `t[axis]` is 0 if
 /// neither of the two faces of that axis is turned to the viewer, 1 if that at the least
 /// coordinate is, 2 if the other.
-pub(super) const SILHOUETTES: [Silhouette; 27] = {
+pub(crate) const SILHOUETTES: [Silhouette; 27] = {
     let mut table = [Silhouette { pairs: [[[0; 2]; 2]; 3], len: 0 }; 27];
     let mut index = 0;
     while index < 27 {

@@ -134,6 +134,52 @@ fn random_worlds() {
     }
 }
 
+/// Policies that ask about many objects at once, each of which is looked at by itself.
+#[test]
+fn swept_worlds() {
+    for gpu in gpus() {
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
+        for (&samples, name) in
+            gpu.sample_counts().iter().flat_map(|s| ["roc", "hroc", "hi-z", "hybrid"].map(|p| (s, p)))
+        {
+            let mut all = Outcome::default();
+            for seed in 0..3 {
+                let formats = [DepthFormat::Depth32Float, DepthFormat::Depth24Plus];
+                let target = (formats[seed as usize % 2], samples);
+                run(&gpu, &mut queries, policy(name), (worlds::random(seed, 120), seed), target, &mut all);
+            }
+            let run = format!("{:?}, {samples} samples, {name}", gpu.backend);
+            println!("{run}: {all:?}");
+            assert_eq!((all.lost, all.wrong), (0, 0), "{run} lost objects: {all:?}");
+            assert!(all.hidden.min(all.visible) > 300, "there are things to hide: {all:?}");
+            assert!(all.culled * 3 > all.hidden, "{run} culled little: {all:?}");
+            assert!(all.extra_submits <= 0, "{run} submits more than once a wave: {all:?}");
+        }
+    }
+}
+
+/// Sweeping shaders that overlook some samples are found out, too.
+#[test]
+fn lying_sweeps_are_found_out() {
+    let Some(gpu) = gpus().into_iter().next() else { return };
+    let mut shaders = Shaders::default();
+    let lie = "if pixel.x % 8u == 0u && covers(&proxy, d)";
+    shaders.sweep_raster.single = shaders.sweep_raster.single.replace("if covers(&proxy, d)", lie).into();
+    let lie = "if i % 2u == 0u && proxies[i].nearest >= farthest";
+    let honest = "if proxies[i].nearest >= farthest";
+    shaders.sweep_hi_z.single = shaders.sweep_hi_z.single.replace(honest, lie).into();
+    let config = GpuConfig { shaders, ..GpuConfig::default() };
+    let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
+    for name in ["roc", "hi-z"] {
+        let mut all = Outcome::default();
+        for seed in 0..2 {
+            let target = (DepthFormat::Depth32Float, 1);
+            run(&gpu, &mut queries, policy(name), (worlds::random(seed, 120), seed), target, &mut all);
+        }
+        assert!(all.lost > 0 && all.wrong > 0, "{name}: {all:?}");
+    }
+}
+
 /// Worlds that are hard on arithmetic: coincident, enormous, tiny and flat things.
 #[test]
 fn pathological_worlds() {

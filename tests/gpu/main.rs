@@ -3,9 +3,10 @@
 mod adapters;
 mod conservative;
 mod failures;
-#[expect(dead_code, reason = "the slow rasteriser in it is for the proxies' own tests")]
 #[path = "../support/geometry.rs"]
 mod geometry;
+mod indirect;
+mod indirect_renderer;
 mod lifecycle;
 mod mutations;
 mod parallel;
@@ -16,5 +17,6 @@ mod renderer;
 #[path = "../support/stage.rs"]
 mod stage;
 mod support;
+mod sweep;
 mod twin;
 mod wgsl;

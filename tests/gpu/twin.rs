@@ -34,27 +34,48 @@ type Counts = [u64; 2];
 /// The plain loop. `raise` is how many 2⁻²⁴ parts of the sum of magnitudes a function is raised by,
 /// `slack` is added to the entry nearness.
 fn plain(proxy: &Proxy, nearness: &Nearness, raise: f64, slack: f64) -> Counts {
+    let (mut visible, mut total) = (0, 0);
+    walk(proxy, raise, |x, y, entry| {
+        let stored = nearness.pixel(x, y);
+        total += stored.len() as u64;
+        visible += stored.iter().filter(|&&n| entry + slack >= f64::from(n)).count() as u64;
+        true
+    });
+    [visible, total]
+}
+
+/// Whether the plain loop finds a sample in sight.
+pub fn plain_any(proxy: &Proxy, nearness: &Nearness, raise: f64) -> bool {
+    let mut found = false;
+    walk(proxy, raise, |x, y, entry| {
+        found = nearness.pixel(x, y).iter().any(|&n| entry >= f64::from(n));
+        !found
+    });
+    found
+}
+
+/// Visits the covered pixels of a proxy with its entry nearness, for as long as `visit` says. All
+/// functions are raised, or lowered, by so many 2⁻²⁴ parts of the sum of magnitudes.
+fn walk(proxy: &Proxy, raise: f64, mut visit: impl FnMut(u32, u32, f64) -> bool) {
     let size = [f64::from(proxy.rect.width()), f64::from(proxy.rect.height())];
-    let tiny = f64::from(f32::MIN_POSITIVE);
+    let tiny = 16.0 * f64::from(f32::MIN_POSITIVE);
     let affine = |&[a, b, c]: &[f32; 3], x: u32, y: u32| {
         let (dx, dy) = ((x - proxy.rect.x0) as f32 + 0.5, (y - proxy.rect.y0) as f32 + 0.5);
         let magnitude = f64::from(a.abs()) * size[0] + f64::from(b.abs()) * size[1] + f64::from(c.abs());
-        let up = if raise > 0.0 { raise / 16_777_216.0 * magnitude + 16.0 * tiny } else { 0.0 };
+        let up = if raise == 0.0 { 0.0 } else { raise / 16_777_216.0 * magnitude + tiny.copysign(raise) };
         f64::from((a * dx + b * dy) + c) + up
     };
-    let (mut visible, mut total) = (0, 0);
     for y in proxy.rect.y0..proxy.rect.y1 {
         for x in proxy.rect.x0..proxy.rect.x1 {
             if proxy.edges.iter().all(|edge| affine(edge, x, y) >= 0.0) {
                 let nearest = f64::from(proxy.nearest);
                 let entry = proxy.planes.iter().fold(nearest, |entry, p| entry.min(affine(p, x, y)));
-                let stored = nearness.pixel(x, y);
-                total += stored.len() as u64;
-                visible += stored.iter().filter(|&&n| entry + slack >= f64::from(n)).count() as u64;
+                if !visit(x, y, entry) {
+                    return;
+                }
             }
         }
     }
-    [visible, total]
 }
 
 /// Backends that are compared with the plain loop, on the same depth.
@@ -199,7 +220,7 @@ pub fn view_of(dice: &mut ChaCha8Rng, (direction, format, samples): Convention) 
 }
 
 /// The proxies of random boxes in a view, and outlines that no box has.
-fn proxies(dice: &mut ChaCha8Rng, view: &View, count: usize) -> Vec<Proxy> {
+pub fn proxies(dice: &mut ChaCha8Rng, view: &View, count: usize) -> Vec<Proxy> {
     let mut all = Vec::new();
     let mut tries = 0;
     while all.len() < count && tries < 40 * count {
@@ -216,7 +237,7 @@ fn proxies(dice: &mut ChaCha8Rng, view: &View, count: usize) -> Vec<Proxy> {
 }
 
 /// Triangles in front of, behind and across the proxies.
-fn occluders(dice: &mut ChaCha8Rng, view: &View, proxies: &[Proxy]) -> Vec<[Vec4; 3]> {
+pub fn occluders(dice: &mut ChaCha8Rng, view: &View, proxies: &[Proxy]) -> Vec<[Vec4; 3]> {
     let mut triangles = Vec::new();
     for proxy in proxies.iter().filter(|_| dice.random_bool(0.5)).copied().collect::<Vec<_>>() {
         let PixelRect { x0, y0, x1, y1 } = proxy.rect;

@@ -28,14 +28,13 @@ use super::pack::PackedProxy;
 use crate::geom::Viewport;
 
 /// What the target holds does not matter.
-const FORMAT: TextureFormat = TextureFormat::R8Unorm;
+pub(super) const FORMAT: TextureFormat = TextureFormat::R8Unorm;
 
 /// The pass.
 #[derive(Debug)]
 pub(super) struct CountFragments {
     pipeline: RenderPipeline,
-    /// What the pass draws into, and its size.
-    canvas: Option<(TextureView, Viewport)>,
+    canvas: Canvas,
 }
 
 impl CountFragments {
@@ -68,7 +67,7 @@ impl CountFragments {
             multiview_mask: None,
             cache: None,
         });
-        Self { pipeline, canvas: None }
+        Self { pipeline, canvas: Canvas::default() }
     }
 
     pub(super) fn record(
@@ -78,13 +77,8 @@ impl CountFragments {
         batch: &Batch,
         viewport: Viewport,
     ) {
-        let size = Viewport::new(viewport.width, viewport.height);
-        let canvas = match &self.canvas {
-            Some((canvas, had)) if *had == size => canvas,
-            _ => &self.canvas.insert((canvas(tape.device, size), size)).0,
-        };
         let attachment = RenderPassColorAttachment {
-            view: canvas,
+            view: self.canvas.of(tape.device, viewport),
             depth_slice: None,
             resolve_target: None,
             ops: Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Discard },
@@ -104,10 +98,23 @@ impl CountFragments {
     }
 }
 
-fn canvas(device: &Device, size: Viewport) -> TextureView {
+/// What passes draw into that write nothing to it, and its size.
+#[derive(Debug, Default)]
+pub(super) struct Canvas(Option<(TextureView, [u32; 2])>);
+
+impl Canvas {
+    /// One of a viewport's size.
+    pub(super) fn of(&mut self, device: &Device, viewport: Viewport) -> &TextureView {
+        let size = [viewport.width, viewport.height];
+        let canvas = self.0.take().filter(|&(_, had)| had == size);
+        &self.0.insert(canvas.unwrap_or_else(|| (canvas_of(device, size), size))).0
+    }
+}
+
+fn canvas_of(device: &Device, [width, height]: [u32; 2]) -> TextureView {
     let descriptor = TextureDescriptor {
         label: Some("tercet canvas"),
-        size: Extent3d { width: size.width, height: size.height, depth_or_array_layers: 1 },
+        size: Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: TextureDimension::D2,

@@ -12,6 +12,7 @@ use super::clock::{Clock, Tape};
 use super::counter::Counters;
 use super::pack::PackedFrame;
 use super::questions::Terms;
+use super::sweep::answer::Sweeps;
 use super::targets::{FrameTargets, Kind};
 use super::{GpuConfig, GpuQueries, guard};
 use crate::Error;
@@ -21,17 +22,17 @@ use crate::query::Wait;
 /// What lives from `begin` to `end`.
 #[derive(Debug)]
 pub(super) struct Frame {
-    view: View,
-    targets: FrameTargets,
+    pub(super) view: View,
+    pub(super) targets: FrameTargets,
     pub(super) terms: Terms,
     bindings: BindGroup,
     /// The same for native queries, if there are any.
     native_bindings: Option<BindGroup>,
     /// What was recorded since the last submission.
-    encoder: Option<CommandEncoder>,
+    pub(super) encoder: Option<CommandEncoder>,
     /// Whether a pass has cleared the attachments, or loaded them for the first time.
     opened: bool,
-    last_submission: Option<SubmissionIndex>,
+    pub(super) last_submission: Option<SubmissionIndex>,
 }
 
 impl GpuQueries {
@@ -79,15 +80,22 @@ impl GpuQueries {
         Ok(frame.pass(&self.device, &mut self.clock, false))
     }
 
-    /// Records the counting of all questions that are open.
-    pub(super) fn record_questions(&mut self) -> Result<(), Error> {
+    /// Sees to it that the attachments have been cleared, or loaded.
+    pub(super) fn open_first(&mut self) -> Result<(), Error> {
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
-        if self.open.asked.is_empty() {
-            return Ok(());
-        }
         if !frame.opened {
             drop(frame.pass(&self.device, &mut self.clock, false));
         }
+        Ok(())
+    }
+
+    /// Records the counting of all questions that are open.
+    pub(super) fn record_questions(&mut self) -> Result<(), Error> {
+        if self.open.asked.is_empty() {
+            return Ok(());
+        }
+        self.open_first()?;
+        let frame = self.frame.as_mut().ok_or_else(not_begun)?;
         let counters = self.counters[usize::from(frame.view.samples() > 1)].as_mut();
         let counters = counters.expect("they were made when the frame began");
         self.stats.question_passes += 1;
@@ -108,14 +116,14 @@ impl GpuQueries {
     /// Submits what was asked and looks, or waits, for what has arrived.
     pub(super) fn bring_answers(&mut self, wait: Wait) -> Result<(), Error> {
         self.record_questions()?;
-        if self.batches.iter().any(|batch| batch.state() == State::Recorded) {
+        if self.awaits(State::Recorded) {
             self.submit()?;
         }
         match wait {
             Wait::Poll => guard::poll(&self.device)?,
             Wait::Block => self.block()?,
         }
-        if self.batches.iter().any(|batch| batch.state() == State::Lost) {
+        if self.awaits(State::Lost) {
             return Err(guard::failed("counts could not be read back"));
         }
         Ok(())
@@ -131,7 +139,7 @@ impl GpuQueries {
     }
 
     /// Submits what was recorded since the last time.
-    fn submit(&mut self) -> Result<(), Error> {
+    pub(super) fn submit(&mut self) -> Result<(), Error> {
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
         let Some(encoder) = frame.encoder.take() else { return Ok(()) };
         self.stats.submits += 1;
@@ -142,6 +150,7 @@ impl GpuQueries {
                 let index = self.queue.submit([commands]);
                 let recorded = self.batches.iter().filter(|batch| batch.state() == State::Recorded);
                 recorded.for_each(Batch::await_results);
+                self.sweeps.iter().for_each(Sweeps::submitted);
                 self.clock.iter_mut().for_each(Clock::submitted);
                 index
             })
@@ -158,17 +167,21 @@ impl GpuQueries {
         let frame = self.frame.as_ref().ok_or_else(not_begun)?;
         let Some(index) = &frame.last_submission else { return Ok(()) };
         let deadline = Instant::now() + self.config.timeout;
-        let is_waiting =
-            |batch: &Batch| batch.state() == State::Submitted && !batch.questions.asked.is_empty();
-        while self.batches.iter().any(is_waiting) {
+        while self.awaits(State::Submitted) {
             let left = deadline.saturating_duration_since(Instant::now());
             guard::wait(&self.device, index.clone(), left)?;
             // Another thread that polls the device may still be about to say that they arrived.
-            if left.is_zero() && self.batches.iter().any(is_waiting) {
+            if left.is_zero() && self.awaits(State::Submitted) {
                 return Err(guard::failed(format!("no answer in {:?}", self.config.timeout)));
             }
         }
         Ok(())
+    }
+
+    /// Whether answers that somebody waits for have got so far.
+    fn awaits(&self, state: State) -> bool {
+        let is_awaited = |batch: &Batch| batch.state() == state && !batch.questions.asked.is_empty();
+        self.batches.iter().any(is_awaited) || self.sweeps.as_ref().is_some_and(|sweeps| sweeps.any(state))
     }
 }
 
@@ -191,7 +204,7 @@ fn free<'a>(batches: &'a mut Vec<Batch>, device: &Device) -> &'a mut Batch {
 }
 
 /// What was recorded since the last submission, to be recorded on.
-fn tape<'a>(
+pub(super) fn tape<'a>(
     encoder: &'a mut Option<CommandEncoder>,
     device: &'a Device,
     clock: &'a mut Option<Clock>,

@@ -40,6 +40,8 @@
 //! | `count_fragments`, `count_workgroups`, `gather_blocks`, `ask_natively` | one pass each |
 //! | `frame` | passes are recorded, submitted once a wave, and waited for |
 //! | `batch`, `read_back` | buffers of a question pass, from upload to read-back |
+//! | `sweep` | many objects at once, from their boxes to verdicts |
+//! | `indirect` | frames that the device culls by itself |
 //! | `clock` | what passes take, by the device's own clock |
 //! | `shaders` | sources; the files are in `shaders/` |
 //! | `guard` | what the device reports, as errors instead of panics |
@@ -66,10 +68,12 @@ mod counter;
 mod frame;
 mod gather_blocks;
 mod guard;
+mod indirect;
 mod pack;
 mod questions;
 mod read_back;
 mod shaders;
+mod sweep;
 mod targets;
 
 use std::time::Duration;
@@ -80,7 +84,9 @@ use wgpu::{Adapter, Backend, Buffer, BufferDescriptor, BufferUsages, Device, Fea
 pub use wgpu;
 
 pub use counter::Counting;
+pub use indirect::{BatchMesh, IndirectBatch, IndirectConfig, IndirectCuller, IndirectStats};
 pub use shaders::{Shader, Shaders};
+pub use sweep::Level;
 pub use targets::{ColorTarget, DepthTarget, FrameTargets};
 
 use super::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
@@ -93,6 +99,7 @@ use counter::Counters;
 use frame::Frame;
 use pack::{EMULATED_RANGE, PackedFrame};
 use questions::Questions;
+use sweep::answer::Sweeps;
 
 /// Who answers [`Want::Any`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -145,6 +152,12 @@ pub struct GpuStats {
     pub question_passes: u64,
     /// Boxes asked about.
     pub boxes: u64,
+    /// Sweeps.
+    pub sweeps: u64,
+    /// Objects that they looked at.
+    pub swept: u64,
+    /// Bytes of boxes that were uploaded for them: of those that have moved since the last sweep.
+    pub uploaded: u64,
     /// Submissions to the queue.
     pub submits: u64,
     /// What the device took for the app's draw passes, of the last frame whose timestamps had
@@ -181,6 +194,7 @@ pub struct GpuQueries {
     /// Asked and not yet recorded.
     open: Questions,
     batches: Vec<Batch>,
+    sweeps: Option<Sweeps>,
     stats: GpuStats,
 }
 
@@ -231,6 +245,7 @@ impl GpuQueries {
             frame: None,
             open: Questions::default(),
             batches: Vec::new(),
+            sweeps: None,
             stats: GpuStats::default(),
         })
     }
@@ -270,6 +285,7 @@ impl GpuQueries {
         self.open.clear();
         self.batches.iter_mut().for_each(Batch::forget);
         self.batches.retain(|batch| batch.state() != batch::State::Lost);
+        self.sweeps.iter_mut().for_each(Sweeps::forget);
     }
 }
 
@@ -305,10 +321,8 @@ impl QueryBackend for GpuQueries {
         Ok(())
     }
 
-    /// Sweeps are not answered here: their objects are drawn, for the driver takes an answer that does
-    /// not come for an unknown one.
-    fn sweep(&mut self, _: Ticket, _: &Sweep<'_>) -> Result<(), Error> {
-        Ok(())
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        self.record_sweep(ticket, sweep)
     }
 
     fn answers(&mut self, wait: Wait, mut deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
@@ -318,6 +332,9 @@ impl QueryBackend for GpuQueries {
             if arrived.is_some() {
                 batch.forget();
             }
+        }
+        if let Some(sweeps) = &mut self.sweeps {
+            sweeps.deliver(result.is_err(), &mut deliver);
         }
         if result.is_err() {
             self.deliver_unknown(&mut deliver);

@@ -1,5 +1,4 @@
-//! Questions as the shaders read them: the twins of the structs in `shaders/shared/question.wgsl`
-//! and `shaders/shared/tiles.wgsl`.
+//! Questions as the shaders read them: the twins of the structs in `shaders/shared/`.
 //!
 //! # Rounding differences err toward visible
 //!
@@ -105,6 +104,14 @@ impl PackedProxy {
         (!packed.nearest.is_nan()).then_some(packed)
     }
 
+    /// As it is evaluated.
+    pub(super) fn unpacked(&self) -> Proxy {
+        let [x0, y0, x1, y1] = self.rect;
+        let three = |&[a, b, c, _]: &[f32; 4]| [a, b, c];
+        let (edges, planes) = (self.edges.each_ref().map(three), self.planes.each_ref().map(three));
+        Proxy { rect: PixelRect { x0, y0, x1, y1 }, edges, planes, nearest: self.nearest }
+    }
+
     /// How many pixels the rectangle has.
     pub(super) fn pixels(&self) -> u64 {
         let [x0, y0, x1, y1] = self.rect;
@@ -161,7 +168,7 @@ fn raised(&[a, b, c]: &[f32; 3], [width, height]: [f32; 2], slack: f32) -> Optio
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use wgpu::naga::front::wgsl;
     use wgpu::naga::{Module, TypeInner};
 
@@ -169,7 +176,7 @@ mod tests {
     use super::*;
 
     /// The offsets of a struct's members and its size, as the shader has them.
-    fn layout(module: &Module, name: &str) -> (Vec<(String, u32)>, u32) {
+    pub(in super::super) fn layout(module: &Module, name: &str) -> (Vec<(String, u32)>, u32) {
         let found = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name));
         match found.map(|(_, t)| &t.inner) {
             Some(TypeInner::Struct { members, span }) => {
@@ -182,9 +189,12 @@ mod tests {
     macro_rules! assert_same_layout {
         ($module:expr, $name:literal, $packed:ty, [$($field:ident),*]) => {
             let want = vec![$((stringify!($field).to_owned(), offset_of!($packed, $field) as u32)),*];
+            let layout = $crate::query::gpu::pack::tests::layout;
             assert_eq!(layout($module, $name), (want, size_of::<$packed>() as u32));
         };
     }
+
+    pub(in super::super) use assert_same_layout;
 
     #[test]
     fn structs_lie_in_memory_as_the_shaders_think() {

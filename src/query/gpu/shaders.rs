@@ -14,7 +14,8 @@ pub struct Shader {
 }
 
 impl Shader {
-    fn source(&self, multisampled: bool) -> &str {
+    /// The one for a number of samples.
+    pub fn source(&self, multisampled: bool) -> &str {
         if multisampled { &self.multisampled } else { &self.single }
     }
 }
@@ -35,6 +36,18 @@ pub struct Shaders {
     pub gather_blocks: Shader,
     /// [`AnyBy::Native`](super::AnyBy::Native), for any number of samples.
     pub ask_natively: Cow<'static, str>,
+    /// Proxies from boxes, for sweeps; for any number of samples.
+    pub project: Cow<'static, str>,
+    /// [`SweepTest::Raster`](crate::query::SweepTest::Raster).
+    pub sweep_raster: Shader,
+    /// The pyramid of farthest depths.
+    pub build_pyramid: Shader,
+    /// [`SweepTest::HiZ`](crate::query::SweepTest::HiZ).
+    pub sweep_hi_z: Shader,
+    /// Which objects a list of an indirect frame holds.
+    pub select: Cow<'static, str>,
+    /// Instances and arguments of an indirect frame.
+    pub compact: Cow<'static, str>,
 }
 
 impl Shaders {
@@ -60,11 +73,13 @@ macro_rules! shader {
     ($($part:literal),*) => {
         Shader {
             single: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/shared/depth.wgsl"),
                 $(include_str!(concat!("../../../shaders/", $part))),*
             )),
             multisampled: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/shared/depth_multisampled.wgsl"),
                 $(include_str!(concat!("../../../shaders/", $part))),*
@@ -76,19 +91,34 @@ macro_rules! shader {
 impl Default for Shaders {
     fn default() -> Self {
         Self {
-            count_fragments: shader!("count_fragments.wgsl"),
-            count_workgroups: shader!("shared/tiles.wgsl", "shared/add_lanes.wgsl", "count_workgroups.wgsl"),
+            count_fragments: shader!("shared/counts.wgsl", "shared/rectangle.wgsl", "count_fragments.wgsl"),
+            count_workgroups: shader!("shared/counts.wgsl", "shared/tiles.wgsl", "shared/add_lanes.wgsl", "count_workgroups.wgsl"),
             count_subgroups: shader!(
+                "shared/counts.wgsl",
                 "shared/tiles.wgsl",
                 "shared/add_subgroups.wgsl",
                 "count_workgroups.wgsl"
             ),
-            count_blocks: shader!("shared/tiles.wgsl", "count_blocks.wgsl"),
+            count_blocks: shader!("shared/counts.wgsl", "shared/tiles.wgsl", "count_blocks.wgsl"),
             gather_blocks: shader!("gather_blocks.wgsl"),
             ask_natively: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/ask_natively.wgsl"),
             )),
+            project: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
+                include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/sweep/project.wgsl"),
+            )),
+            sweep_raster: shader!("shared/verdict.wgsl", "shared/rectangle.wgsl", "sweep/raster.wgsl"),
+            build_pyramid: shader!("shared/pyramid.wgsl", "sweep/pyramid.wgsl"),
+            sweep_hi_z: shader!("shared/verdict.wgsl", "shared/pyramid.wgsl", "sweep/hi_z.wgsl"),
+            select: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/indirect/select.wgsl"),
+            )),
+            compact: Cow::Borrowed(include_str!("../../../shaders/indirect/compact.wgsl")),
         }
     }
 }

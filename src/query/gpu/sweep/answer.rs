@@ -1,0 +1,280 @@
+//! Sweeps that a policy asks for: the device looks, and the host reads the verdicts back.
+
+use std::num::NonZeroU64;
+
+use bytemuck::{bytes_of, cast_slice, try_cast_slice};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, Queue};
+
+use super::asked::{Asked, SEEN, exactly};
+use super::boxes::{self, PackedBox};
+use super::mirror::Mirrored;
+use super::view::PackedView;
+use super::{Bound, Passes};
+use crate::Error;
+use crate::geom::PlaneMask;
+use crate::query::gpu::read_back::{ReadBack, State};
+use crate::query::gpu::{GpuQueries, frame, guard};
+use crate::query::{Answer, Sweep, SweepTest, Ticket};
+use crate::scene::{ObjectId, ObjectSet};
+use crate::tree::NodeId;
+
+/// What sweeps need, made by the first one.
+#[derive(Debug)]
+pub(in crate::query::gpu) struct Sweeps {
+    /// For targets with one sample a pixel and with several.
+    pub(super) passes: [Option<Passes>; 2],
+    pub(super) boxes: Mirrored<PackedBox>,
+    /// Reused by uploads.
+    scratch: Vec<PackedBox>,
+    view: Buffer,
+    /// Whether the boxes are those of this frame.
+    is_uploaded: bool,
+    /// Of this frame, if it has swept.
+    pub(super) bound: Option<Bound>,
+    pub(super) sweeps: Vec<Swept>,
+    /// What could not be asked.
+    refused: Vec<Ticket>,
+    /// Reused by walks through the tree.
+    stack: Vec<(NodeId, PlaneMask)>,
+}
+
+/// One sweep, from upload to read-back; its buffers are reused.
+#[derive(Debug)]
+pub(super) struct Swept {
+    ticket: Option<Ticket>,
+    pub(super) ids: Vec<ObjectId>,
+    slots: Buffer,
+    pub(super) asked: Asked,
+    read_back: ReadBack,
+}
+
+impl Sweeps {
+    fn new(device: &Device) -> Self {
+        Self {
+            passes: [None, None],
+            boxes: Mirrored::new(device, "tercet boxes"),
+            scratch: Vec::new(),
+            view: device.create_buffer(&BufferDescriptor {
+                label: Some("tercet view"),
+                size: size_of::<PackedView>() as u64,
+                usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            is_uploaded: false,
+            bound: None,
+            sweeps: Vec::new(),
+            refused: Vec::new(),
+            stack: Vec::new(),
+        }
+    }
+
+    /// Forgets all sweeps, and the frame.
+    pub(in crate::query::gpu) fn forget(&mut self) {
+        (self.is_uploaded, self.bound) = (false, None);
+        self.refused.clear();
+        for swept in &mut self.sweeps {
+            swept.ticket = None;
+            swept.read_back.reclaim();
+        }
+        self.sweeps.retain(|swept| swept.read_back.state() != State::Lost);
+    }
+
+    /// Whether the read-back of some sweep is in a state, and somebody waits for it.
+    pub(in crate::query::gpu) fn any(&self, state: State) -> bool {
+        self.sweeps.iter().any(|swept| swept.ticket.is_some() && swept.read_back.state() == state)
+    }
+
+    /// Asks for the verdicts of what was recorded; to be called when it has been submitted.
+    pub(in crate::query::gpu) fn submitted(&self) {
+        let recorded = self.sweeps.iter().filter(|swept| swept.read_back.state() == State::Recorded);
+        recorded.for_each(|swept| swept.read_back.await_bytes());
+    }
+
+    /// Hands out what has arrived; with `all`, everything else as unknown.
+    pub(in crate::query::gpu) fn deliver(&mut self, all: bool, deliver: &mut impl FnMut(Ticket, Answer<'_>)) {
+        for ticket in self.refused.drain(..) {
+            deliver(ticket, Answer::Unknown);
+        }
+        let mut found = ObjectSet::default();
+        for swept in &mut self.sweeps {
+            let Some(ticket) = swept.ticket else { continue };
+            found.clear();
+            let arrived = swept.read_back.read(|bytes| {
+                let verdicts: &[u32] = try_cast_slice(bytes).unwrap_or(&[]);
+                for (&id, &verdict) in swept.ids.iter().zip(verdicts) {
+                    if verdict == SEEN {
+                        found.insert(id);
+                    }
+                }
+            });
+            match arrived {
+                Some(()) => deliver(ticket, Answer::Swept(&found)),
+                None if all => deliver(ticket, Answer::Unknown),
+                None => continue,
+            }
+            swept.ticket = None;
+            swept.read_back.reclaim();
+        }
+    }
+}
+
+impl GpuQueries {
+    /// Records a sweep against what has been drawn so far. What the device cannot hold is unknown.
+    pub(in crate::query::gpu) fn record_sweep(
+        &mut self,
+        ticket: Ticket,
+        sweep: &Sweep<'_>,
+    ) -> Result<(), Error> {
+        self.bind_sweeps()?;
+        // Nobody here knows whose draws are whose.
+        let recorded = match sweep.test {
+            SweepTest::Owners => None,
+            test => self.record_looks(sweep, Some(test)).map(Some).or_else(refused)?,
+        };
+        let sweeps = self.sweeps.as_mut().expect("they are bound");
+        match recorded {
+            Some(index) => sweeps.sweeps[index].ticket = Some(ticket),
+            None => sweeps.refused.push(ticket),
+        }
+        Ok(())
+    }
+
+    /// Records the passes of a sweep, without a test only those that make proxies; returns which
+    /// sweep it is.
+    pub(super) fn record_looks(
+        &mut self,
+        sweep: &Sweep<'_>,
+        test: Option<SweepTest>,
+    ) -> Result<usize, Error> {
+        self.bind_sweeps()?;
+        let (device, queue) = (&self.device, &self.queue);
+        let frame = self.frame.as_mut().expect("sweeps are bound in a frame");
+        let Sweeps { passes, boxes, scratch, is_uploaded, bound, sweeps, stack, .. } =
+            self.sweeps.as_mut().expect("they are bound");
+        let passes = passes[usize::from(frame.view.samples() > 1)].as_mut().expect("made when bound");
+        let bound = bound.as_ref().expect("they are bound");
+        let index = free(sweeps, device);
+        let swept = &mut sweeps[index];
+        list(sweep, stack, &mut swept.ids);
+        self.stats.sweeps += 1;
+        self.stats.swept += swept.ids.len() as u64;
+        guard::guarded(device, || {
+            if !std::mem::replace(is_uploaded, true) {
+                boxes::collect(sweep.scene, scratch);
+                self.stats.uploaded += boxes.follow(device, queue, scratch)?;
+            }
+            swept.load(device, queue)?;
+            let mut tape = frame::tape(&mut frame.encoder, device, &mut self.clock);
+            let slots = exactly(&swept.slots, swept.asked.count(), size_of::<u32>());
+            passes.project.record(&mut tape, &bound.view, boxes.binding(), slots, &swept.asked);
+            if let Some(test) = test {
+                let by_pyramid = test == SweepTest::HiZ;
+                passes.record_test(&mut tape, bound, &swept.asked, frame.view.viewport(), by_pyramid);
+            }
+            swept.copy_verdicts(device, tape.encoder);
+            Ok(index)
+        })?
+    }
+
+    /// Binds what sweeps need of the frame, once a frame. What was asked before is recorded first: it
+    /// is about the same depth.
+    pub(super) fn bind_sweeps(&mut self) -> Result<(), Error> {
+        self.record_questions()?;
+        self.open_first()?;
+        let frame = self.frame.as_ref().ok_or_else(frame::not_begun)?;
+        let sweeps = match &mut self.sweeps {
+            Some(sweeps) => sweeps,
+            none => none.insert(guard::guarded(&self.device, || Sweeps::new(&self.device))?),
+        };
+        if sweeps.bound.is_some() {
+            return Ok(());
+        }
+        let several = frame.view.samples() > 1;
+        let passes = match &mut sweeps.passes[usize::from(several)] {
+            Some(passes) => passes,
+            none => none.insert(Passes::new(&self.device, &self.config.shaders, several)?),
+        };
+        sweeps.bound = Some(guard::guarded(&self.device, || {
+            let packed = PackedView::new(&frame.view, self.slack);
+            self.queue.write_buffer(&sweeps.view, 0, bytes_of(&packed));
+            passes.bind(&self.device, &sweeps.view, &self.uniforms, frame.targets.readable_depth())
+        })?);
+        Ok(())
+    }
+}
+
+/// What the device cannot do for a sweep is not the frame's failure.
+fn refused(error: Error) -> Result<Option<usize>, Error> {
+    if matches!(error, Error::Device { .. }) { Ok(None) } else { Err(error) }
+}
+
+impl Swept {
+    /// Uploads which objects are asked about. The upload happens when the encoder is submitted.
+    fn load(&mut self, device: &Device, queue: &Queue) -> Result<(), Error> {
+        self.asked.resize(device, self.ids.len())?;
+        if 4 * self.ids.len() as u64 > self.slots.size() {
+            self.slots = slots(device, self.ids.len() + self.ids.len() / 2);
+        }
+        let listed: Vec<u32> = self.ids.iter().map(|id| id.slot() as u32).collect();
+        queue.write_buffer(&self.slots, 0, cast_slice(&listed));
+        Ok(())
+    }
+
+    /// Records the way of the verdicts into memory that can be read.
+    fn copy_verdicts(&mut self, device: &Device, encoder: &mut CommandEncoder) {
+        let verdicts = self.asked.verdicts();
+        let bytes = verdicts.size.map_or(0, NonZeroU64::get);
+        self.read_back.claim(device, bytes);
+        encoder.copy_buffer_to_buffer(verdicts.buffer, 0, self.read_back.buffer(), 0, bytes);
+    }
+}
+
+/// A sweep that nobody uses.
+fn free(sweeps: &mut Vec<Swept>, device: &Device) -> usize {
+    let found = sweeps.iter().position(|swept| swept.ticket.is_none() && swept.read_back.reclaim());
+    found.unwrap_or_else(|| {
+        sweeps.push(Swept {
+            ticket: None,
+            ids: Vec::new(),
+            slots: slots(device, 64),
+            asked: Asked::new(device),
+            read_back: ReadBack::new(device, 256),
+        });
+        sweeps.len() - 1
+    })
+}
+
+/// Lists the objects of a sweep that meet the frustum: those of groups by walking down, with the
+/// planes that their nodes cross.
+fn list(sweep: &Sweep<'_>, stack: &mut Vec<(NodeId, PlaneMask)>, ids: &mut Vec<ObjectId>) {
+    let (tree, store, frustum) = (sweep.scene.tree(), sweep.scene.objects_store(), sweep.frustum);
+    ids.clear();
+    ids.extend(sweep.loose.iter().filter(|&&id| {
+        let bounds = store.slot(id).and_then(|slot| tree.aabb_of(slot));
+        bounds.is_some_and(|bounds| frustum.intersects(&bounds))
+    }));
+    stack.clear();
+    stack.extend(sweep.groups.iter().map(|&group| (group, PlaneMask::ALL)));
+    while let Some((node, mask)) = stack.pop() {
+        if tree.count(node) == 0 {
+            continue;
+        }
+        let Some(mask) = frustum.classify(&tree.bounds(node), mask) else { continue };
+        for block in tree.own(node) {
+            let outside = frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
+            let lanes = block.slots.iter().enumerate();
+            let inside = lanes.filter(|&(lane, &slot)| slot != u32::MAX && outside & (1 << lane) == 0);
+            ids.extend(inside.map(|(_, &slot)| store.id(slot)));
+        }
+        stack.extend(tree.children(node).into_iter().flatten().map(|child| (child, mask)));
+    }
+}
+
+fn slots(device: &Device, count: usize) -> Buffer {
+    device.create_buffer(&BufferDescriptor {
+        label: Some("tercet swept slots"),
+        size: 4 * count.max(1) as u64,
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}

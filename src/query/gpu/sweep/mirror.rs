@@ -1,0 +1,124 @@
+//! Arrays of the host that the device has a copy of, uploaded by what has changed.
+
+use bytemuck::{Pod, cast_slice};
+use wgpu::{Buffer, BufferBinding, BufferDescriptor, BufferUsages, Device, Queue};
+
+use crate::Error;
+use crate::query::gpu::guard::failed;
+
+/// A storage buffer that follows an array: what the device has is kept beside it and compared, chunk
+/// by chunk. So nothing has to be reported by whoever changes the array, and nothing can be missed.
+/// An array that stays as it is costs a comparison at the speed of memory, and no upload.
+#[derive(Debug)]
+pub(in crate::query::gpu) struct Mirrored<T> {
+    known: Vec<T>,
+    buffer: Buffer,
+    label: &'static str,
+}
+
+/// Elements that are compared, and uploaded, together.
+const CHUNK: usize = 32;
+
+impl<T: Pod> Mirrored<T> {
+    pub(in crate::query::gpu) fn new(device: &Device, label: &'static str) -> Self {
+        Self { known: Vec::new(), buffer: buffer::<T>(device, label, CHUNK), label }
+    }
+
+    /// Uploads what has changed, and takes the array for known; what comes back in exchange is for
+    /// its memory. Returns the bytes uploaded.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the device cannot bind so many.
+    pub(in crate::query::gpu) fn follow(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        now: &mut Vec<T>,
+    ) -> Result<u64, Error> {
+        let bytes = size_of_val(now.as_slice()) as u64;
+        let most = device.limits().max_storage_buffer_binding_size;
+        if bytes > most {
+            return Err(failed(format!("{}: {bytes} bytes, and it binds {most} at most", self.label)));
+        }
+        if bytes > self.buffer.size() {
+            let room = (now.len() + now.len() / 2).min(most as usize / size_of::<T>()).max(now.len());
+            self.buffer = buffer::<T>(device, self.label, room);
+            self.known.clear();
+        }
+        let uploaded = changes(&self.known, now).map(|range| {
+            let changed = cast_slice::<T, u8>(&now[range.clone()]);
+            queue.write_buffer(&self.buffer, (range.start * size_of::<T>()) as u64, changed);
+            changed.len() as u64
+        });
+        let uploaded = uploaded.sum();
+        std::mem::swap(&mut self.known, now);
+        Ok(uploaded)
+    }
+
+    /// How many elements there are.
+    pub(in crate::query::gpu) fn len(&self) -> usize {
+        self.known.len()
+    }
+
+    /// All elements, and no more; one if there is none.
+    pub(in crate::query::gpu) fn binding(&self) -> BufferBinding<'_> {
+        let bytes = (self.known.len().max(1) * size_of::<T>()) as u64;
+        BufferBinding { buffer: &self.buffer, offset: 0, size: bytes.try_into().ok() }
+    }
+}
+
+/// The ranges in which two arrays differ, in whole chunks, none of them next to another.
+fn changes<T: Pod>(known: &[T], now: &[T]) -> impl Iterator<Item = std::ops::Range<usize>> {
+    let differs = |at: usize| {
+        let (first, end) = (at * CHUNK, ((at + 1) * CHUNK).min(now.len()));
+        known.get(first..end).map(cast_slice::<T, u8>) != Some(cast_slice(&now[first..end]))
+    };
+    let (chunks, count) = (now.len().div_ceil(CHUNK), now.len());
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let first = (at..chunks).find(|&chunk| differs(chunk))?;
+        let end = (first + 1..chunks).find(|&chunk| !differs(chunk)).unwrap_or(chunks);
+        at = end;
+        Some(first * CHUNK..(end * CHUNK).min(count))
+    })
+}
+
+fn buffer<T>(device: &Device, label: &'static str, count: usize) -> Buffer {
+    device.create_buffer(&BufferDescriptor {
+        label: Some(label),
+        size: (count.max(1) * size_of::<T>()) as u64,
+        usage: BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changed(known: &[u32], now: &[u32]) -> Vec<std::ops::Range<usize>> {
+        changes(known, now).collect()
+    }
+
+    #[test]
+    fn what_differs_is_found_and_no_more() {
+        let known: Vec<u32> = (0..1000).collect();
+        assert_eq!(changed(&known, &known), []);
+        assert_eq!(changed(&[], &known), [0..1000]);
+        assert_eq!(changed(&known, &known[..500]), [], "what is gone needs no upload");
+        let mut now = known.clone();
+        (now[0], now[70], now[95], now[999]) = (7, 7, 7, 7);
+        assert_eq!(changed(&known, &now), [0..32, 64..96, 992..1000]);
+        (now[96], now[127]) = (7, 7);
+        assert_eq!(changed(&known, &now), [0..32, 64..128, 992..1000]);
+        now.push(1);
+        assert_eq!(changed(&known, &now).last(), Some(&(992..1001)));
+        assert_eq!(changed(&known, &[]), []);
+    }
+
+    #[test]
+    fn bits_are_compared_and_not_numbers() {
+        assert_eq!(changes(&[0.0f32], &[-0.0]).count(), 1);
+        assert_eq!(changes(&[f32::NAN], &[f32::NAN]).count(), 0);
+    }
+}

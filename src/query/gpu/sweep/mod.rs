@@ -1,0 +1,156 @@
+//! Sweeps on the device: which of many objects may own a sample of what would be drawn now?
+//!
+//! ```text
+//!   boxes, by slot ──project──▶ a proxy and a verdict each ──raster, or pyramid and hi_z──▶ verdicts
+//! ```
+//!
+//! | file | |
+//! |---|---|
+//! | `boxes`, `mirror` | the objects' boxes on the device, uploaded by what has changed |
+//! | `view`, `project` | a view's uniforms, and proxies from boxes |
+//! | `asked` | proxies and verdicts |
+//! | `raster` | the test of ROC: draw the proxies |
+//! | `pyramid`, `hi_z` | the test of Rákos 2010: compare with the farthest depth around |
+//! | `answer` | sweeps of a policy: one read-back each |
+//! | `inspect` | what the device has made, to look at |
+
+pub(super) mod answer;
+pub(super) mod asked;
+pub(super) mod boxes;
+mod hi_z;
+mod inspect;
+pub(super) mod mirror;
+pub(super) mod project;
+pub(super) mod pyramid;
+pub(super) mod raster;
+pub(super) mod view;
+
+use wgpu::{
+    BindGroup, Buffer, ComputePipeline, ComputePipelineDescriptor, Device, ShaderModule, ShaderStages,
+    TextureView,
+};
+
+pub use inspect::Level;
+
+use super::bind::{self, DepthAs, Layouts};
+use super::clock::Tape;
+use super::counter::compiled;
+use super::guard::{failed, guarded};
+use super::shaders::Shaders;
+use crate::Error;
+use crate::geom::Viewport;
+use asked::Asked;
+use hi_z::HiZ;
+use project::Project;
+use pyramid::Pyramid;
+use raster::Raster;
+
+/// The stages that read the frame and the depth.
+const STAGES: ShaderStages = ShaderStages::VERTEX_FRAGMENT.union(ShaderStages::COMPUTE);
+
+/// The passes, for targets with one sample a pixel or with several.
+#[derive(Debug)]
+pub(super) struct Passes {
+    /// What all but `project` bind of the frame.
+    frame: Layouts,
+    pub(super) project: Project,
+    pub(super) raster: Raster,
+    pub(super) pyramid: Pyramid,
+    pub(super) hi_z: HiZ,
+}
+
+/// What the passes bind of a frame: to make proxies, and to look at depth.
+#[derive(Debug)]
+pub(super) struct Bound {
+    pub(super) view: BindGroup,
+    pub(super) frame: BindGroup,
+}
+
+impl Passes {
+    pub(super) fn new(device: &Device, shaders: &Shaders, multisampled: bool) -> Result<Self, Error> {
+        let limits = device.limits();
+        if limits.max_storage_buffers_per_shader_stage < 4 || limits.max_compute_workgroups_per_dimension == 0
+        {
+            return Err(failed("it has no compute shaders with four storage buffers: sweeps need them"));
+        }
+        guarded(device, || {
+            let depth = DepthAs::texture(multisampled);
+            let module = |shader: &super::Shader| compiled(device, shader.source(multisampled));
+            Self {
+                frame: Layouts::new(device, STAGES, &[], depth),
+                project: Project::new(device, &compiled(device, &shaders.project)),
+                raster: Raster::new(device, &module(&shaders.sweep_raster), depth),
+                pyramid: Pyramid::new(device, &module(&shaders.build_pyramid), depth),
+                hi_z: HiZ::new(device, &module(&shaders.sweep_hi_z), depth),
+            }
+        })
+    }
+
+    /// Binds a view's and a frame's uniforms, and its depth.
+    pub(super) fn bind(&self, device: &Device, view: &Buffer, frame: &Buffer, depth: &TextureView) -> Bound {
+        Bound {
+            view: bind::frame(device, &self.project.layouts.frame, view, None),
+            frame: bind::frame(device, &self.frame.frame, frame, Some(depth)),
+        }
+    }
+
+    /// Records the test of proxies, by the pyramid if that is asked for and can be had.
+    pub(super) fn record_test(
+        &mut self,
+        tape: &mut Tape<'_>,
+        bound: &Bound,
+        asked: &Asked,
+        viewport: Viewport,
+        by_pyramid: bool,
+    ) {
+        if by_pyramid && self.pyramid.resize(tape.device, viewport) {
+            self.pyramid.record(tape, &bound.frame);
+            self.hi_z.record(tape, &bound.frame, asked, &self.pyramid);
+        } else {
+            self.raster.record(tape, &bound.frame, asked, viewport);
+        }
+    }
+}
+
+/// A stage that computes.
+pub(super) fn compute(
+    device: &Device,
+    layouts: &Layouts,
+    module: &ShaderModule,
+    entry: &str,
+) -> ComputePipeline {
+    device.create_compute_pipeline(&ComputePipelineDescriptor {
+        label: Some("tercet sweep"),
+        layout: Some(&layouts.pipeline),
+        module,
+        entry_point: Some(entry),
+        compilation_options: Default::default(),
+        cache: None,
+    })
+}
+
+/// Invocations a workgroup of the stages that look at boxes, as the shaders have them.
+pub(super) const LANES: u32 = 64;
+
+/// Records a pass of one stage over a number of boxes. There may be more workgroups than boxes need.
+pub(super) fn dispatch(
+    tape: &mut Tape<'_>,
+    label: &str,
+    pipeline: &ComputePipeline,
+    groups: [&BindGroup; 2],
+    count: u32,
+) {
+    let [columns, rows] = grid(tape.device, count.div_ceil(LANES));
+    let mut pass = tape.compute_pass(label);
+    pass.set_pipeline(pipeline);
+    for (index, group) in (0..).zip(groups) {
+        pass.set_bind_group(index, group, &[]);
+    }
+    pass.dispatch_workgroups(columns, rows, 1);
+}
+
+/// Columns and rows of at least so many workgroups.
+pub(super) fn grid(device: &Device, groups: u32) -> [u32; 2] {
+    let rows = groups.div_ceil(device.limits().max_compute_workgroups_per_dimension).max(1);
+    [groups.div_ceil(rows), rows]
+}
