@@ -22,12 +22,12 @@ pub trait Plan: Debug + Default + Send + Sync {
     /// to know which of them are still visible adds them.
     fn plan(&mut self, cx: &Context<'_>, first: &First, targets: &mut Targets);
 
-    /// See [`Policy::counters`].
+    /// See [`Policy::counters`](super::Policy::counters).
     fn counters(&self) -> Vec<Counter> {
         Vec::new()
     }
 
-    /// See [`Policy::dials`].
+    /// See [`Policy::dials`](super::Policy::dials).
     fn dials(&self) -> Vec<Dial> {
         Vec::new()
     }
