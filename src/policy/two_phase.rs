@@ -8,80 +8,28 @@
 //! this very frame has not found it. V decides what comes first, and nothing else: one of it that has
 //! moved is drawn where it is now, and one that is gone is left out.
 //!
-//! *In parts.* After a cut V hides little, and nearly everything in the frustum would be found. Where many
-//! objects are found that were not visible before, the nearest of them are drawn first, and the others
-//! swept again behind those; several times, if need be. (Ours. Lee et al. name IOC, which sweeps
+//! *In parts.* After a cut V hides little, and nearly everything in the frustum would be found. Where more
+//! than half as many objects are found as V has, the nearest of them are drawn first, and the others swept
+//! again behind those; several times, if need be, in parts that double. (Ours. Lee et al. name IOC, which sweeps
 //! between two depths of its hierarchy.)
 //!
 //! What hides nothing is no part of V: it is asked about in every frame.
 
-use std::fmt::Debug;
-
+use super::plan::{First, Plan, Targets};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
-use crate::geom::PlaneMask;
 use crate::query::compact::Compaction;
 use crate::query::{SweepTest, Wait};
 use crate::scene::{ObjectId, ObjectSet};
 use crate::tree::NodeId;
 use crate::{Counter, Error};
 
-/// What a policy of two phases asks about.
-pub trait Plan: Debug + Default + Send + Sync {
-    /// The policy's name.
-    const NAME: &'static str;
-
-    /// How the sweep tests.
-    const TEST: SweepTest;
-
-    /// Chooses what the sweep is about. The objects of the first phase are drawn already; whoever wants
-    /// to know which of them are still visible adds them.
-    fn plan(&mut self, cx: &Context<'_>, first: &First, targets: &mut Targets);
-
-    /// See [`Policy::counters`].
-    fn counters(&self) -> Vec<Counter> {
-        Vec::new()
-    }
-
-    /// See [`Policy::dials`].
-    fn dials(&self) -> Vec<Dial> {
-        Vec::new()
-    }
-
-    /// Sets a dial by name; false if there is none of that name.
-    ///
-    /// # Errors
-    /// [`Error::Dial`] for a value that it does not take.
-    fn set(&mut self, _key: &str, _value: &str) -> Result<bool, Error> {
-        Ok(false)
-    }
-}
-
-/// The objects of the first phase.
-#[derive(Clone, Debug, Default)]
-pub struct First {
-    /// By slot.
-    pub objects: Vec<ObjectId>,
-    /// The same.
-    pub set: ObjectSet,
-    /// Whether the sweep must say which of them are still visible: nobody else will.
-    pub retest: bool,
-}
-
-/// What a sweep is about.
-#[derive(Clone, Debug, Default)]
-pub struct Targets {
-    /// Nodes, none of them below another.
-    pub groups: Vec<NodeId>,
-    /// Objects that are tested by themselves.
-    pub loose: Vec<ObjectId>,
-}
-
 /// A policy that draws what was visible, sweeps, and draws what is found; see the names for it in
 /// [`policy`](super).
 #[derive(Clone, Debug)]
 pub struct TwoPhase<P> {
-    /// Whether an object must own a sample to be drawn first in the next frame.
+    /// Whether an object must own a sample to be drawn first in the next frame; else its box must have
+    /// one in sight. On the CPU to find owners costs about what drawing did, and hardly culls more.
     pub occluder_filtering: bool,
     /// In how many parts, at most, many new objects are drawn, each swept behind those before it.
     pub parts: u32,
@@ -153,7 +101,7 @@ const PART: usize = 64;
 impl<P: Plan> Default for TwoPhase<P> {
     fn default() -> Self {
         Self {
-            occluder_filtering: true,
+            occluder_filtering: false,
             parts: 8,
             near_first: true,
             plan: P::default(),
@@ -427,18 +375,5 @@ const fn alone(test: SweepTest) -> SweepTest {
     match test {
         SweepTest::HiZ => SweepTest::HiZ,
         _ => SweepTest::Raster,
-    }
-}
-
-/// The own objects of a node that meet the frustum, by slot.
-pub(super) fn each_own(cx: &Context<'_>, node: NodeId, mut found: impl FnMut(u32)) {
-    let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), PlaneMask::ALL) else { return };
-    for block in cx.tree.own(node) {
-        let outside = cx.frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
-        for (lane, &slot) in block.slots.iter().enumerate() {
-            if slot != u32::MAX && outside & (1 << lane) == 0 {
-                found(slot);
-            }
-        }
     }
 }

@@ -6,7 +6,7 @@
 //! longer than it need be: that costs a test, and changes no answer.
 
 use super::super::Context;
-use super::super::two_phase::each_own;
+use super::super::plan::each_own;
 use crate::geom::Aabb;
 use crate::scene::{ObjectId, ObjectSet};
 use crate::tree::NodeId;

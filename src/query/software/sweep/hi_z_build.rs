@@ -71,7 +71,7 @@ impl PyramidLevel {
     /// infinitely near: the least is that of the others.
     fn fold_pixels(&mut self, depth: &Depth) {
         self.rows(|y, row| {
-            let blocks = &depth.blocks()[(2 * y >> BLOCK_BITS) * depth.across()..];
+            let blocks = &depth.blocks()[((2 * y) >> BLOCK_BITS) * depth.across()..];
             for (block, texels) in blocks.iter().zip(row.chunks_mut(BLOCK as usize / 2)) {
                 for (x, texel) in texels.iter_mut().enumerate() {
                     let (tile, lane) = within(2 * x as u32, 2 * y as u32);
