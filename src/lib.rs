@@ -63,8 +63,10 @@
 //! | CHC | `policy/chc.rs`, `policy/coherence.rs` | Bittner et al. 2004 |
 //! | CHC++: queues, multiqueries, tight volumes | `policy/chc_plus_plus/` | Mattausch et al. 2008 |
 //! | hierarchy updating, visibility propagation | `policy/hierarchy/` | Bittner and Havran 2001 |
+//! | raster occlusion culling in two phases: ROC, HROC, hybrid | `policy/two_phase.rs`, `policy/roc.rs`, `policy/hroc/`, `policy/hybrid/`, `query/software/sweep/` | Lee et al. 2021 |
+//! | Hi-Z map | `policy/hi_z.rs`, `query/software/sweep/hi_z_build.rs`, `hi_z_test.rs` | Rákos 2010 |
 //! | stop-and-wait, OPT, REF | `policy/stop_and_wait.rs`, `policy/recorded.rs` | Bittner et al. 2004, Mattausch et al. 2008, Lee et al. 2021 |
-//! | conservative box proxy | `geom/proxy.rs` | its proof is in the module |
+//! | conservative box proxy, and that of a group | `geom/proxy.rs`, `geom/group.rs` | their proofs are in the modules |
 //! | exact software rasteriser and counts | `query/software/` | |
 //! | exact counts on the GPU (feature `gpu`) | `query/gpu/`, `shaders/` | |
 //! | exact visible set (item buffer) | `query/oracle.rs` | |

@@ -214,6 +214,8 @@ fn a_dropped_group_or_object_is_found_out() {
                 let mut policy = policy::by_name(name).expect("a policy of that name");
                 // Groups are small and many, and what is dropped is not asked about again.
                 policy.set("parts", "1").expect("a dial of that name");
+                // Nor is what was drawn already, for which it would not matter.
+                policy.set("occluder_filtering", "true").expect("a dial of that name");
                 let mut dropping = Dropping { inner: SoftwareQueries::new(), groups, loose };
                 all.add(run(&mut stage, TreeConfig::default(), policy, &mut dropping, FRAMES));
             }

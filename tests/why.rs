@@ -188,6 +188,7 @@ fn policies() -> Vec<Box<dyn Policy>> {
         ("dual-query", "order", "visible-first"),
         ("dual-query", "n_skip", "5"),
         ("statistical", "n_skip", "0"),
+        ("hroc", "occluder_filtering", "true"),
     ] {
         let mut policy = policy::by_name(name).expect("its name");
         policy.set(key, value).expect("its dial");

@@ -5,7 +5,8 @@
 //! It finds more than [`Roc`](super::Roc) does, and each test is shorter.
 
 use super::Context;
-use super::two_phase::{First, Plan, Targets, TwoPhase};
+use super::plan::{First, Plan, Targets};
+use super::two_phase::TwoPhase;
 use crate::query::SweepTest;
 
 /// Culling by the Hi-Z map.

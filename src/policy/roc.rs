@@ -2,7 +2,8 @@
 //! then the box of every object in the frustum is rasterised by itself.
 
 use super::Context;
-use super::two_phase::{First, Plan, Targets, TwoPhase};
+use super::plan::{First, Plan, Targets};
+use super::two_phase::TwoPhase;
 use crate::query::SweepTest;
 
 /// Raster occlusion culling.

@@ -8,83 +8,33 @@
 //! this very frame has not found it. V decides what comes first, and nothing else: one of it that has
 //! moved is drawn where it is now, and one that is gone is left out.
 //!
-//! *In parts.* After a cut V hides little, and nearly everything in the frustum would be found. Where many
-//! objects are found that were not visible before, the nearest of them are drawn first, and the others
-//! swept again behind those; several times, if need be. (Ours. Lee et al. name IOC, which sweeps
+//! *In parts.* After a cut V hides little, and nearly everything in the frustum would be found. Where more
+//! than half as many objects are found as V has, the nearest of them are drawn first, and the others swept
+//! again behind those; several times, if need be, in parts that double. (Ours. Lee et al. name IOC, which sweeps
 //! between two depths of its hierarchy.)
 //!
 //! What hides nothing is no part of V: it is asked about in every frame.
 
-use std::fmt::Debug;
-
+use super::plan::{First, Plan, Targets};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
-use crate::geom::PlaneMask;
 use crate::query::compact::Compaction;
 use crate::query::{SweepTest, Wait};
 use crate::scene::{ObjectId, ObjectSet};
 use crate::tree::NodeId;
 use crate::{Counter, Error};
 
-/// What a policy of two phases asks about.
-pub trait Plan: Debug + Default + Send + Sync {
-    /// The policy's name.
-    const NAME: &'static str;
-
-    /// How the sweep tests.
-    const TEST: SweepTest;
-
-    /// Chooses what the sweep is about. The objects of the first phase are drawn already; whoever wants
-    /// to know which of them are still visible adds them.
-    fn plan(&mut self, cx: &Context<'_>, first: &First, targets: &mut Targets);
-
-    /// See [`Policy::counters`].
-    fn counters(&self) -> Vec<Counter> {
-        Vec::new()
-    }
-
-    /// See [`Policy::dials`].
-    fn dials(&self) -> Vec<Dial> {
-        Vec::new()
-    }
-
-    /// Sets a dial by name; false if there is none of that name.
-    ///
-    /// # Errors
-    /// [`Error::Dial`] for a value that it does not take.
-    fn set(&mut self, _key: &str, _value: &str) -> Result<bool, Error> {
-        Ok(false)
-    }
-}
-
-/// The objects of the first phase.
-#[derive(Clone, Debug, Default)]
-pub struct First {
-    /// By slot.
-    pub objects: Vec<ObjectId>,
-    /// The same.
-    pub set: ObjectSet,
-    /// Whether the sweep must say which of them are still visible: nobody else will.
-    pub retest: bool,
-}
-
-/// What a sweep is about.
-#[derive(Clone, Debug, Default)]
-pub struct Targets {
-    /// Nodes, none of them below another.
-    pub groups: Vec<NodeId>,
-    /// Objects that are tested by themselves.
-    pub loose: Vec<ObjectId>,
-}
-
 /// A policy that draws what was visible, sweeps, and draws what is found; see the names for it in
 /// [`policy`](super).
 #[derive(Clone, Debug)]
 pub struct TwoPhase<P> {
-    /// Whether an object must own a sample to be drawn first in the next frame.
+    /// Whether an object must own a sample to be drawn first in the next frame; else its box must have
+    /// one in sight. On the CPU to find owners costs about what drawing did, and hardly culls more.
     pub occluder_filtering: bool,
     /// In how many parts, at most, many new objects are drawn, each swept behind those before it.
     pub parts: u32,
+    /// Whether what was visible is drawn from near to far; else by slot, the same in every view.
+    pub near_first: bool,
     /// What is asked.
     pub plan: P,
     stage: Stage,
@@ -144,17 +94,16 @@ struct Counts {
     found: u32,
 }
 
-/// New objects from which they are drawn in parts.
-const MANY: usize = 32;
-
-/// The share of the new objects that is drawn as a part: one of so many.
-const PART: usize = 4;
+/// New objects that are drawn at once in any case; the first part has so many, and each further one
+/// twice as many as the one before.
+const PART: usize = 64;
 
 impl<P: Plan> Default for TwoPhase<P> {
     fn default() -> Self {
         Self {
-            occluder_filtering: true,
-            parts: 4,
+            occluder_filtering: false,
+            parts: 8,
+            near_first: true,
             plan: P::default(),
             stage: Stage::Done,
             ticket: Ticket(0),
@@ -188,7 +137,6 @@ impl<P: Plan> Policy for TwoPhase<P> {
 
     fn begin(&mut self, cx: &Context<'_>) {
         self.counts = Counts::default();
-        self.parts_left = self.parts;
         self.second.clear();
         self.rest.clear();
         let First { objects, set, retest } = &mut self.first;
@@ -204,6 +152,9 @@ impl<P: Plan> Policy for TwoPhase<P> {
             }
         }
         self.counts.first = objects.len() as u32;
+        if self.near_first {
+            near_first(cx, &mut self.first.objects, &mut self.order);
+        }
         self.stage = Stage::DrawFirst;
     }
 
@@ -250,7 +201,14 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 Stage::SweepRest => {
                     self.stage = Stage::Wait;
                     let ticket = self.new_ticket();
-                    return Action::Sweep { ticket, groups: &[], loose: &self.rest, test: alone(P::TEST) };
+                    // Groups find out at once what has become hidden as a whole.
+                    let (groups, loose, test) = match P::TEST {
+                        SweepTest::Rays if self.counts.groups > 0 => {
+                            (&self.targets.groups[..], &self.targets.loose[..], P::TEST)
+                        }
+                        _ => (&[][..], &self.rest[..], alone(P::TEST)),
+                    };
+                    return Action::Sweep { ticket, groups, loose, test };
                 }
                 Stage::DrawLost(group) => {
                     if let Some(&node) = self.targets.groups.get(group) {
@@ -293,7 +251,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
         }
         self.answer = match answer {
             Answer::Swept(found) => {
-                self.found.clone_from(found);
+                self.found.assign(found.words().iter().copied());
                 Reply::Found
             }
             _ => Reply::Lost,
@@ -328,6 +286,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 self.occluder_filtering,
                 "draw first only what owned a sample in the last frame",
             ),
+            Dial::new("near_first", self.near_first, "draw what was visible from near to far, not by slot"),
             Dial::new("parts", self.parts, "parts in which many new objects are drawn, at most"),
         ];
         dials.extend(self.plan.dials());
@@ -339,6 +298,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
             "occluder_filtering" => {
                 self.occluder_filtering = dial::choice(key, value, &[("true", true), ("false", false)])?;
             }
+            "near_first" => self.near_first = dial::choice(key, value, &[("true", true), ("false", false)])?,
             "parts" => self.parts = dial::number(key, value, 1..=64)?,
             _ if self.plan.set(key, value)? => {}
             _ => return Err(dial::unknown(key, value, &self.dials())),
@@ -371,33 +331,16 @@ impl<P: Plan> TwoPhase<P> {
         } else {
             self.rest.retain(|&id| self.found.contains(id));
         }
-        self.parts_left -= 1;
-        if self.rest.len() < MANY || self.parts_left == 0 {
-            self.stage = Stage::DrawPart(self.rest.len());
-            return;
-        }
         if is_main {
-            self.sort_rest(cx);
+            // Most of what is visible is in the depth already: there is little to win.
+            let is_usual = self.rest.len() <= self.first.objects.len() / 2;
+            self.parts_left = if is_usual { 1 } else { self.parts };
+            near_first(cx, &mut self.rest, &mut self.order);
         }
-        self.stage = Stage::DrawPart(self.rest.len().div_ceil(PART));
-    }
-
-    /// Orders what was found from near to far; what hides nothing comes last.
-    fn sort_rest(&mut self, cx: &Context<'_>) {
-        let eye = cx.view.eye();
-        let store = cx.scene.objects_store();
-        let distance = |id: ObjectId| {
-            let bounds = cx.tree.aabb_of(id.slot() as u32).filter(|_| store.is_occluder(id.slot() as u32));
-            bounds.map_or(f32::INFINITY, |bounds| match eye.w {
-                0.0 => -eye.truncate().dot(bounds.center()),
-                _ => bounds.distance_squared(eye.truncate()),
-            })
-        };
-        self.order.clear();
-        self.order.extend(self.rest.iter().map(|&id| (distance(id), id)));
-        self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        self.rest.clear();
-        self.rest.extend(self.order.iter().map(|&(_, id)| id));
+        self.parts_left -= 1;
+        let part = PART.max(self.second.len());
+        let all = self.rest.len();
+        self.stage = Stage::DrawPart(if self.parts_left == 0 { all } else { part.min(all) });
     }
 
     /// The V of the next frame: what was drawn, and is still visible if that was asked, as far as it hides
@@ -411,23 +354,26 @@ impl<P: Plan> TwoPhase<P> {
     }
 }
 
+/// Orders objects from near to far; what hides nothing comes last.
+fn near_first(cx: &Context<'_>, objects: &mut Vec<ObjectId>, order: &mut Vec<(f32, ObjectId)>) {
+    let (eye, store) = (cx.view.eye(), cx.scene.objects_store());
+    let distance = |id: ObjectId| {
+        let bounds = cx.tree.aabb_of(id.slot() as u32).filter(|_| store.is_occluder(id.slot() as u32));
+        bounds.map_or(f32::INFINITY, |bounds| match eye.w {
+            0.0 => -eye.truncate().dot(bounds.center()),
+            _ => bounds.distance_squared(eye.truncate()),
+        })
+    };
+    order.clear();
+    order.extend(objects.drain(..).map(|id| (distance(id), id)));
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    objects.extend(order.iter().map(|&(_, id)| id));
+}
+
 /// How objects are tested that have no group.
 const fn alone(test: SweepTest) -> SweepTest {
     match test {
         SweepTest::HiZ => SweepTest::HiZ,
         _ => SweepTest::Raster,
-    }
-}
-
-/// The own objects of a node that meet the frustum, by slot.
-pub(super) fn each_own(cx: &Context<'_>, node: NodeId, mut found: impl FnMut(u32)) {
-    let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), PlaneMask::ALL) else { return };
-    for block in cx.tree.own(node) {
-        let outside = cx.frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
-        for (lane, &slot) in block.slots.iter().enumerate() {
-            if slot != u32::MAX && outside & (1 << lane) == 0 {
-                found(slot);
-            }
-        }
     }
 }

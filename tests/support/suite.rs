@@ -65,9 +65,9 @@ pub fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
         }
         ("hierarchy-b", 2) => &[("whole", "true")],
         ("hierarchy-c", 1 | 2) => &[("p_vp", "1")],
-        ("roc" | "hi-z", 1) => &[("occluder_filtering", "false")],
+        ("roc" | "hi-z", 1) => &[("occluder_filtering", "true"), ("near_first", "false")],
         ("roc" | "hi-z", 2) => &[("parts", "1")],
-        ("hroc" | "hybrid", 1) => &[("occluder_filtering", "false"), ("share", "0.01")],
+        ("hroc" | "hybrid", 1) => &[("occluder_filtering", "true"), ("share", "0.01")],
         ("hroc" | "hybrid", 2) => &[("share", "1"), ("parts", "1")],
         ("hierarchy-d", 1) => &[("p_vp", "1"), ("p_skip", "0.9")],
         ("hierarchy-d", 2) => &[("p_vp", "1"), ("p_skip", "0"), ("whole", "true")],

@@ -40,6 +40,8 @@ impl Hall {
             world.query::<(Entity, &Drawable)>().iter().map(|(entity, _)| entity).collect();
         everybody.sort_unstable();
         let mut eye = Culler::new(Hybrid::default());
+        // What was visible is not swept again: what is loose moves, or stands beside it.
+        eye.policy_mut().occluder_filtering = true;
         eye.tradeoff = Tradeoff::EXACT;
         let mut scene = Scene::new(SceneConfig::default());
         scene.adapt([&mut eye]);

@@ -31,8 +31,7 @@ fn owners_are_those_whom_the_oracle_sees() {
                 .look_at(view, &candidates, |pass, objects| draw(world, view, detail, pass, objects))
                 .expect("the oracle looks");
             let asked: Vec<ObjectId> = table.objects.iter().map(|object| object.id).collect();
-            let asked: Vec<ObjectId> =
-                asked.into_iter().filter(|_| table.dice.random_bool(0.8)).collect();
+            let asked: Vec<ObjectId> = asked.into_iter().filter(|_| table.dice.random_bool(0.8)).collect();
             let found = table.sweep(&[], &asked, SweepTest::Owners);
             for id in asked {
                 assert_eq!(found.contains(&id.slot()), truth.exact.contains(id), "seed {seed}: {id:?}");

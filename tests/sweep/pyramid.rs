@@ -16,7 +16,8 @@ fn view(direction: DepthDirection, (width, height): (u32, u32)) -> View {
         DepthDirection::Reversed => projection::perspective(1.0, aspect, 0.1),
         DepthDirection::Standard => projection::perspective_standard(1.0, aspect, 0.1, 100.0),
     };
-    let from_world: Mat4 = glam::camera::rh::view::look_at_mat4(Vec3::new(3.0, 4.0, 30.0), Vec3::ZERO, Vec3::Y);
+    let from_world: Mat4 =
+        glam::camera::rh::view::look_at_mat4(Vec3::new(3.0, 4.0, 30.0), Vec3::ZERO, Vec3::Y);
     let view = View::new(from_world, clip, Viewport::new(width, height)).expect("a view");
     view.with_target(direction, DepthFormat::Depth32Float, 1)
 }

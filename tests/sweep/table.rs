@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use hecs::World;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use hecs::World;
 use tercet::draw::{Detail, Drawable};
 use tercet::geom::{Frustum, Question, View, Viewport};
 use tercet::query::software::{SoftwarePass, SoftwareQueries};
@@ -109,8 +109,7 @@ impl Table {
                     Question::Outside => false,
                     Question::Visible => true,
                     Question::Ask(p) => (p.rect.y0..p.rect.y1).any(|y| {
-                        (p.rect.x0..p.rect.x1)
-                            .any(|x| p.covers(x, y) && p.nearness(x, y) >= depth.at(x, y))
+                        (p.rect.x0..p.rect.x1).any(|x| p.covers(x, y) && p.nearness(x, y) >= depth.at(x, y))
                     }),
                 }
         };

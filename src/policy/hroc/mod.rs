@@ -19,7 +19,8 @@
 mod extract;
 
 use super::Context;
-use super::two_phase::{First, Plan, Targets, TwoPhase, each_own};
+use super::plan::{First, Plan, Targets, each_own};
+use super::two_phase::TwoPhase;
 use crate::Error;
 use crate::dial::{self, Dial};
 use crate::geom::{Projected, project};

@@ -6,7 +6,7 @@
 //! longer than it need be: that costs a test, and changes no answer.
 
 use super::super::Context;
-use super::super::two_phase::each_own;
+use super::super::plan::each_own;
 use crate::geom::Aabb;
 use crate::scene::{ObjectId, ObjectSet};
 use crate::tree::NodeId;
@@ -90,8 +90,7 @@ fn may_hold_awake(cx: &Context<'_>, node: NodeId) -> bool {
 fn hash(bounds: &Aabb, generation: u32) -> u32 {
     let words = bounds.min.to_array().into_iter().chain(bounds.max.to_array()).map(f32::to_bits);
     // FNV-1a, a word a step; the high bits are folded in at the end.
-    let hash = words.fold(0x811c_9dc5 ^ generation, |hash, word| {
-        (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(5)
-    });
+    let hash = words
+        .fold(0x811c_9dc5 ^ generation, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(5));
     (hash ^ hash >> 15).max(1)
 }

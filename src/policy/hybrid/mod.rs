@@ -15,7 +15,8 @@ mod awake;
 
 use super::Context;
 use super::hroc::{Groups, share_dial};
-use super::two_phase::{First, Plan, Targets, TwoPhase};
+use super::plan::{First, Plan, Targets};
+use super::two_phase::TwoPhase;
 use crate::dial::{self, Dial};
 use crate::query::SweepTest;
 use crate::{Counter, Error};

@@ -176,7 +176,7 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
             simd::prefetch(&frame.calls[soon.call as usize]);
             simd::prefetch(&frame.footprints[soon.call as usize]);
         }
-        if sink.hides::<I>(&rect, nearest) {
+        if !sink.wants(index) || sink.hides::<I>(&rect, nearest) {
             continue;
         }
         drawn.push(index);
@@ -195,7 +195,7 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
         }
         for part in parts.iter() {
             // A mesh of one part is as large as the call, and that is not hidden.
-            if whole || !sink.hides::<I>(&part.rect, part.nearest) {
+            if whole || (sink.wants(index) && !sink.hides::<I>(&part.rect, part.nearest)) {
                 let part = meshlets.part(part.part as usize);
                 *kept += draw_part::<I, S>(frame, index, &part, vertices, room, sink);
             }

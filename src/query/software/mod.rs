@@ -41,15 +41,15 @@ use rayon::prelude::*;
 pub use depth::DepthImage;
 pub use level::SimdLevel;
 pub use pass::{DrawCall, SoftwarePass};
-pub use sweep::{Pyramid, PyramidLevel};
 pub(crate) use simd::prefetch;
+pub use sweep::{Pyramid, PyramidLevel};
 pub(crate) use visibility::Snapshot;
 pub use visibility::VisibilityImage;
 
 use super::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
-use crate::scene::ObjectRef;
 use crate::Error;
 use crate::geom::{Proxy, View};
+use crate::scene::ObjectRef;
 use bands::Bands;
 use depth::Depth;
 use hi_z::HiZ;

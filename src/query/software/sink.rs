@@ -15,6 +15,12 @@ pub(crate) trait Sink {
     /// What the sink holds.
     fn rows(&self) -> Rows;
 
+    /// Whether more of a draw call can tell the sink anything.
+    #[inline(always)]
+    fn wants(&mut self, _call: u32) -> bool {
+        true
+    }
+
     /// Whether nothing of `nearest` or farther changes anything in some pixels of the band.
     #[inline(always)]
     fn hides<I: Isa>(&mut self, rect: &PixelRect, nearest: f32) -> bool {

@@ -8,7 +8,8 @@
 
 use rayon::prelude::*;
 
-use super::super::DepthImage;
+use super::super::depth::Depth;
+use super::super::layout::{BLOCK, BLOCK_BITS, TILE, within};
 
 /// Texels from which the rows of a level are shared among threads.
 const SHARED_FROM: usize = 1 << 16;
@@ -38,11 +39,10 @@ impl Pyramid {
     }
 
     /// Builds all levels. O(pixels).
-    pub(crate) fn build(&mut self, depth: DepthImage<'_>) {
-        let (mut width, mut height) = (depth.width(), depth.height());
+    pub(crate) fn build(&mut self, depth: &Depth) {
+        let (mut width, mut height) = (depth.image().width(), depth.image().height());
         let mut count = 0;
         while width > 1 || height > 1 {
-            let below = [width, height];
             (width, height) = (width.div_ceil(2), height.div_ceil(2));
             if count == self.levels.len() {
                 self.levels.push(PyramidLevel::default());
@@ -52,8 +52,8 @@ impl Pyramid {
             (level.width, level.height) = (width, height);
             level.farthest.resize(width as usize * height as usize, 0.0);
             match done.last() {
-                None => level.fold(below, |x, y| depth.at(x, y)),
-                Some(done) => level.fold(below, |x, y| done.at(x, y)),
+                None => level.fold_pixels(depth),
+                Some(below) => level.fold(below),
             }
             count += 1;
         }
@@ -67,20 +67,41 @@ impl PyramidLevel {
         self.farthest[(y * self.width + x) as usize]
     }
 
-    /// Takes the least of each four texels of the level below, of this size.
-    fn fold(&mut self, [below_width, below_height]: [u32; 2], below: impl Fn(u32, u32) -> f32 + Sync) {
-        let row = |(y, row): (usize, &mut [f32])| {
-            let (y0, y1) = (2 * y as u32, (2 * y as u32 + 1).min(below_height - 1));
-            for (x, texel) in row.iter_mut().enumerate() {
-                let (x0, x1) = (2 * x as u32, (2 * x as u32 + 1).min(below_width - 1));
-                *texel = below(x0, y0).min(below(x1, y0)).min(below(x0, y1).min(below(x1, y1)));
+    /// Takes the least of each four pixels, as the depth buffer lies. Pixels beyond the viewport are
+    /// infinitely near: the least is that of the others.
+    fn fold_pixels(&mut self, depth: &Depth) {
+        self.rows(|y, row| {
+            let blocks = &depth.blocks()[((2 * y) >> BLOCK_BITS) * depth.across()..];
+            for (block, texels) in blocks.iter().zip(row.chunks_mut(BLOCK as usize / 2)) {
+                for (x, texel) in texels.iter_mut().enumerate() {
+                    let (tile, lane) = within(2 * x as u32, 2 * y as u32);
+                    let pixels = &block.0[tile];
+                    let pair = |lane: usize| pixels[lane].min(pixels[lane + 1]);
+                    *texel = pair(lane).min(pair(lane + TILE as usize));
+                }
             }
-        };
-        let width = self.width as usize;
+        });
+    }
+
+    /// Takes the least of each four texels of the level below.
+    fn fold(&mut self, below: &Self) {
+        let (width, last) = (below.width as usize, below.height as usize - 1);
+        self.rows(|y, row| {
+            let line = |y: usize| &below.farthest[y.min(last) * width..][..width];
+            let (upper, lower) = (line(2 * y).chunks(2), line(2 * y + 1).chunks(2));
+            for (texel, (upper, lower)) in row.iter_mut().zip(upper.zip(lower)) {
+                *texel = upper.iter().chain(lower).copied().fold(f32::INFINITY, f32::min);
+            }
+        });
+    }
+
+    /// Fills its rows, on several threads if there is much to do.
+    fn rows(&mut self, fill: impl Fn(usize, &mut [f32]) + Sync) {
+        let (width, fill) = (self.width as usize, |(y, row): (usize, &mut [f32])| fill(y, row));
         if self.farthest.len() < SHARED_FROM {
-            self.farthest.chunks_mut(width).enumerate().for_each(row);
+            self.farthest.chunks_mut(width).enumerate().for_each(fill);
         } else {
-            self.farthest.par_chunks_mut(width).enumerate().with_min_len(16).for_each(row);
+            self.farthest.par_chunks_mut(width).enumerate().with_min_len(16).for_each(fill);
         }
     }
 }

@@ -45,7 +45,8 @@ mod tests {
     fn a_rectangle_lies_in_at_most_two_texels_a_side_and_no_level_lower_would_do() {
         for pixels in 1..300_u32 {
             let level = level_for(pixels);
-            let texels = |level: u32| (0..512).map(|at| ((at + pixels - 1) >> level) - (at >> level) + 1).max();
+            let texels =
+                |level: u32| (0..512).map(|at| ((at + pixels - 1) >> level) - (at >> level) + 1).max();
             assert!(texels(level) <= Some(2), "{pixels} pixels at level {level}");
             assert!(level == 0 || texels(level - 1) > Some(2), "{pixels} pixels fit level {}", level - 1);
         }

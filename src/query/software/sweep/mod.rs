@@ -123,7 +123,7 @@ impl Sweeps {
         let field = Field { sweep, tree, simd, scene, loose: &self.loose, flags: &self.flags };
         let mut tally = Tally::default();
         if sweep.test == SweepTest::HiZ {
-            self.pyramid.build(scene.depth.image());
+            self.pyramid.build(scene.depth);
         }
         self.todo.fill(&field, &self.pyramid, &mut tally);
         let Todo { objects, groups, .. } = &self.todo;

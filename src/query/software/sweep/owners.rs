@@ -76,6 +76,12 @@ impl Sink for OwnerSink<'_> {
         self.rows
     }
 
+    /// One sample is enough.
+    #[inline(always)]
+    fn wants(&mut self, call: u32) -> bool {
+        self.seen[call as usize / 64] & (1 << (call % 64)) == 0
+    }
+
     #[inline(always)]
     fn hides_tiles<I: Isa>(&mut self, block: usize, tiles: Mask, nearest: I::F) -> bool {
         tiles & self.open_tiles::<I>(block, nearest) == 0
