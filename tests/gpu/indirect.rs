@@ -34,6 +34,7 @@ pub struct Outcome {
 
 /// A draw of a frame, to be read back: this is for the test alone.
 struct Draw {
+    batch: Batch,
     instances: wgpu::Buffer,
     instances_offset: u64,
     arguments: wgpu::Buffer,
@@ -42,9 +43,9 @@ struct Draw {
 
 impl Draw {
     fn of(batch: &IndirectBatch<'_>) -> Self {
-        let IndirectBatch { instances, instances_offset, arguments, arguments_offset, .. } = *batch;
+        let IndirectBatch { batch, instances, instances_offset, arguments, arguments_offset } = *batch;
         let (instances, arguments) = (instances.clone(), arguments.clone());
-        Self { instances, instances_offset, arguments, arguments_offset }
+        Self { batch, instances, instances_offset, arguments, arguments_offset }
     }
 }
 
@@ -71,7 +72,8 @@ fn slots(gpu: &Gpu, draws: &[Draw]) -> Vec<Vec<u32>> {
         .map(|draw| {
             let count = arguments[draw.arguments_offset as usize / 4 + 1] as usize;
             let first = draw.instances_offset as usize / 4;
-            instances[first..first + count].to_vec()
+            // More than there is room for, if a shader is wrong.
+            instances.get(first..first.saturating_add(count)).map_or(vec![u32::MAX], <[u32]>::to_vec)
         })
         .collect()
 }
@@ -175,6 +177,77 @@ fn pathological_worlds() {
         }
         println!("{:?}: {all:?}", gpu.backend);
         assert!(all.culled > 0, "{all:?}");
+    }
+}
+
+/// What the lists of some frames should hold, and what they hold: nothing is drawn, so what lies in
+/// view is visible, and what lies behind the eye is not. Returns how many lists are wrong.
+pub fn wrong_lists(gpu: &Gpu, config: IndirectConfig, count: usize) -> usize {
+    let mut scene = Scene::new(SceneConfig::default());
+    let z = |i: usize| if i * i % 7 < 4 { -5.0 } else { 5.0 };
+    for i in 0..count {
+        let place = glam::Vec3::new((i % 50) as f32 * 0.1 - 2.5, (i / 50 % 30) as f32 * 0.1 - 1.5, z(i));
+        let traits = Traits { not_occluder: i % 11 == 3, ..traits((i * 5 % 13 % 4) as u32) };
+        scene.insert(Aabb::from_center(place, glam::Vec3::splat(0.2)), traits);
+    }
+    scene.update();
+    let mut eye = view(gpu, config);
+    let mut wrong = 0;
+    let mut before = ObjectSet::default();
+    for toward in [-1.0, -1.0, 1.0, -1.0] {
+        let target = glam::Vec3::Z * toward;
+        let view = View::look_at(glam::Vec3::ZERO, target, 90.0, 0.1, SCREEN).expect("a view");
+        let depth = depth_texture(gpu, &view);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut calls = Vec::new();
+        // The last mesh has no objects, so it is not drawn.
+        let meshes: Vec<_> =
+            (0..5).map(|i| BatchMesh { index_count: 3 * i, first_index: i, base_vertex: -1 }).collect();
+        eye.frame(&scene, &view, &targets(&depth, false), &meshes, &mut encoder, |_, batches| {
+            assert!(batches.iter().all(|batch| batch.batch.0 < 4) && batches.is_sorted_by_key(|b| b.batch.0));
+            calls.push(batches.iter().map(Draw::of).collect::<Vec<_>>());
+        })
+        .expect("a frame");
+        gpu.queue.submit([encoder.finish()]);
+        let mut now = ObjectSet::default();
+        for (call, draws) in calls.iter().enumerate() {
+            let mut expected = vec![Vec::new(); 4];
+            for object in scene.objects() {
+                let (id, late) = (object.object.id, object.traits.not_occluder);
+                let ahead = object.bounds.expect("it has a box").center().z * toward > 0.0;
+                if ahead {
+                    now.insert(id);
+                }
+                if ahead && call == if late { 2 } else { usize::from(!before.contains(id)) } {
+                    expected[object.traits.batch.expect("it has one").0 as usize].push(id.slot() as u32);
+                }
+            }
+            for (draw, found) in draws.iter().zip(slots(gpu, draws)) {
+                let expected = std::mem::take(&mut expected[draw.batch.0 as usize]);
+                wrong += usize::from(found != expected);
+            }
+            assert!(expected.iter().all(Vec::is_empty), "every mesh with objects is drawn");
+            let arguments = words(gpu, &draws[0].arguments);
+            for (mesh, words) in meshes.iter().zip(arguments.as_chunks::<5>().0) {
+                let [index_count, _, first_index, base_vertex, first_instance] = *words;
+                let of_mesh = [mesh.index_count, mesh.first_index, mesh.base_vertex as u32, 0];
+                wrong += usize::from([index_count, first_index, base_vertex, first_instance] != of_mesh);
+            }
+        }
+        before = now;
+    }
+    wrong
+}
+
+/// Lists in the order of slots, of few objects and of more than one step of the sum holds.
+#[test]
+fn lists_hold_what_is_visible_in_order() {
+    for gpu in gpus() {
+        for count in [1, 256, 1000, 70_000] {
+            for test in [SweepTest::HiZ, SweepTest::Raster] {
+                assert_eq!(wrong_lists(&gpu, config(test), count), 0, "{:?}, {count}, {test:?}", gpu.backend);
+            }
+        }
     }
 }
 

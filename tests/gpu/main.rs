@@ -18,5 +18,6 @@ mod renderer;
 mod stage;
 mod support;
 mod sweep;
+mod sweep_mutations;
 mod twin;
 mod wgsl;

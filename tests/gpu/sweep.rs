@@ -23,13 +23,13 @@ pub struct Tally {
     samples: usize,
     /// Boxes with a sample in sight, and without.
     seen: usize,
-    hidden: usize,
+    pub hidden: usize,
     /// Hidden ones that the pyramid took for seen.
     loose: usize,
     /// Objects that only the normative proxy shows.
     fewer: usize,
     /// Objects that only the device's proxy shows.
-    more: usize,
+    pub more: usize,
     /// What is outside the bounds, a stage: proxies, pyramid, raster, Hi-Z.
     pub faults: [usize; 4],
 }
@@ -73,6 +73,9 @@ impl<'g> Twin<'g> {
         let normative: Vec<_> = boxes.cases.iter().map(|case| Question::new(&case.world, &view)).collect();
         let proxies: Vec<_> = normative.iter().filter_map(proxy).collect();
         let mut triangles = occluders(dice, &view, &proxies);
+        if dice.random() {
+            triangles = mosaic(dice, &view, &proxies);
+        }
         triangles.extend((0..3).map(|_| wall_before(dice, &view, &proxies)));
         let (depth, nearness) = depth_of(self.gpu, &mut self.queries, &view, &triangles);
         self.queries.target(&targets(&depth, true));
@@ -149,6 +152,25 @@ fn wall_before(dice: &mut ChaCha8Rng, view: &View, proxies: &[Proxy]) -> [Vec4; 
     let far = view.depth().cleared();
     let nearness = (far + (proxy.nearest - far) * dice.random_range(1.0..2.0)).min(far + 1.0);
     [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.5]].map(|[i, j]| clip(view, [x + i * size, y + j * size], nearness))
+}
+
+/// Squares of a few pixels over all of the screen, each about as near as some proxy: the farthest of
+/// neighbouring texels differ everywhere.
+fn mosaic(dice: &mut ChaCha8Rng, view: &View, proxies: &[Proxy]) -> Vec<[Vec4; 3]> {
+    const SIDE: u32 = 4;
+    let (width, height) = (view.viewport().width, view.viewport().height);
+    let far = view.depth().cleared();
+    let mut triangles = Vec::new();
+    for (x, y) in (0..height.div_ceil(SIDE)).flat_map(|y| (0..width.div_ceil(SIDE)).map(move |x| (x, y))) {
+        let Some(proxy) = proxies.get(dice.random_range(0..proxies.len().max(1))) else { break };
+        let by = dice.random_range(0.9..1.5);
+        let nearness = (far + (proxy.nearest - far) * by).clamp(far, far + 1.0);
+        let corner =
+            |i: u32, j: u32| clip(view, [((x + i) * SIDE) as f32, ((y + j) * SIDE) as f32], nearness);
+        triangles.push([corner(0, 0), corner(1, 0), corner(1, 1)]);
+        triangles.push([corner(0, 0), corner(1, 1), corner(0, 1)]);
+    }
+    triangles
 }
 
 fn proxy(question: &Question) -> Option<Proxy> {

@@ -20,8 +20,13 @@ fn sources() -> Vec<(String, Capabilities)> {
             (shaders.source(counting, several).to_owned(), needs)
         }));
         all.push((shaders.gather_blocks_source(several).to_owned(), Capabilities::empty()));
+        for shader in [&shaders.sweep_raster, &shaders.build_pyramid, &shaders.sweep_hi_z] {
+            all.push((shader.source(several).to_owned(), Capabilities::empty()));
+        }
     }
-    all.push((shaders.ask_natively.into_owned(), Capabilities::empty()));
+    for source in [shaders.ask_natively, shaders.project, shaders.select, shaders.compact] {
+        all.push((source.into_owned(), Capabilities::empty()));
+    }
     all
 }
 
@@ -60,8 +65,9 @@ fn shaders_are_valid_and_portable() {
         }
     }
     assert_eq!(
-        entries, 14,
-        "a vertex, a fragment and four compute stages, each twice; two of native queries"
+        entries, 30,
+        "twice each: two vertex, two fragment and seven compute stages; two of native queries, and six \
+         more that read no depth"
     );
 }
 
