@@ -140,7 +140,11 @@ impl Frustum {
         }
         let mut bits = 0;
         for lane in 0..N {
-            let valid = (0..3).fold(1, |all, axis| all & u32::from(min[axis][lane] <= max[axis][lane]));
+            // As `Aabb::is_valid`: in order, an end that is infinite is one of these two.
+            let valid = (0..3).fold(1, |all, axis| {
+                let (low, high) = (min[axis][lane], max[axis][lane]);
+                all & u32::from(low <= high) & u32::from(low >= f32::MIN) & u32::from(high <= f32::MAX)
+            });
             bits |= (outside[lane] & valid) << lane;
         }
         bits
@@ -292,7 +296,16 @@ mod tests {
         let frustum = Frustum::new(&view());
         let behind = cube(0.0, 0.0, 10.0);
         for axis in 0..3 {
-            for (low, high) in [(f32::NAN, 1.0), (0.0, f32::NAN), (f32::NAN, f32::NAN), (1.0, -1.0)] {
+            const INFINITE: f32 = f32::INFINITY;
+            for (low, high) in [
+                (f32::NAN, 1.0),
+                (0.0, f32::NAN),
+                (f32::NAN, f32::NAN),
+                (1.0, -1.0),
+                (1.0, INFINITE),
+                (-INFINITE, 1.0),
+                (INFINITE, INFINITE),
+            ] {
                 let mut bad = behind;
                 (bad.min[axis], bad.max[axis]) = (low, high);
                 assert!(frustum.intersects(&bad), "{bad:?}");

@@ -35,7 +35,10 @@ pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, Error> {
 
 fn read_mesh(path: &Path) -> Result<Mesh, String> {
     // Images are not asked for, and so neither found missing nor decoded.
-    let file = gltf::Gltf::open(path).map_err(|e| e.to_string())?;
+    let bytes = std::fs::read(path).map_err(|e| e.to_string())?;
+    let unchecked = gltf::Gltf::from_slice_without_validation(&bytes).map_err(|e| e.to_string())?;
+    check_accessors(unchecked.document.as_json())?;
+    let file = gltf::Gltf::from_slice(&bytes).map_err(|e| e.to_string())?;
     let folder = path.parent();
     let buffers = gltf::import_buffers(&file.document, folder, file.blob).map_err(|e| e.to_string())?;
     let mut stand_ins = Vec::new();
@@ -55,6 +58,16 @@ fn read_mesh(path: &Path) -> Result<Mesh, String> {
     }
     let name = finest.name().map_or_else(|| format!("mesh {}", finest.index()), str::to_owned);
     Mesh::with_levels(name, levels).map_err(|e| e.to_string())
+}
+
+/// Whether every primitive's attributes exist: gltf's own validation panics where they do not.
+fn check_accessors(root: &gltf::json::Root) -> Result<(), String> {
+    let count = root.accessors.len();
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    match primitives.flat_map(|p| p.attributes.values()).find(|index| index.value() >= count) {
+        None => Ok(()),
+        Some(index) => Err(format!("accessor {} does not exist: the file has {count}", index.value())),
+    }
 }
 
 /// The nodes that stand in for a node, finest first.
@@ -159,6 +172,7 @@ mod tests {
                 r#""indices": 1, "mode": 0 }"#,
                 "mesh 0, primitive 0: is not a list",
             ),
+            ("accessor", r#""POSITION": 0 }, "indices""#, r#""POSITION": 2 }, "indices""#, "accessor 2"),
             ("lod-ids", r#"[1, 2]"#, r#"["a"]"#, "node 0: MSFT_lod"),
             ("lod-range", r#"[1, 2]"#, r#"[7]"#, "node 7"),
             ("error", "0.25", r#""far""#, "mesh 1: extras error"),

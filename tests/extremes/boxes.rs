@@ -73,10 +73,10 @@ proptest! {
         let around = aabb.transformed(&m);
         prop_assert!(around.is_valid());
         for corner in aabb.corners() {
-            for axis in 0..3 {
+            for (axis, &shift) in shift.iter().enumerate() {
                 let row = m.matrix3.row(axis);
                 let terms = [0, 1, 2].map(|k| &Dyadic::from(row[k]) * &Dyadic::from(corner[k]));
-                let sum = terms.iter().fold(Dyadic::from(shift[axis]), |sum, term| &sum + term);
+                let sum = terms.iter().fold(Dyadic::from(shift), |sum, term| &sum + term);
                 prop_assert!(is_held(around.min[axis], around.max[axis], &sum), "{corner} in {around:?}");
             }
         }

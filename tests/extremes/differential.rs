@@ -162,10 +162,10 @@ fn check_rect(view: &View, rect: &ScreenRect, exact: &Exact) -> Result<(), Strin
     let size = [viewport.width, viewport.height].map(|side| side as f32);
     let (nearest, farthest) = (Dyadic::from(rect.nearest), Dyadic::from(rect.farthest));
     for point in exact.all() {
-        for axis in 0..2 {
+        for (axis, &size) in size.iter().enumerate() {
             let beyond = |limit: f32| point.beyond(&point.screen[axis], &Dyadic::from(limit));
             let below = rect.min[axis] > 0.0 && beyond(rect.min[axis]).is_negative();
-            let above = rect.max[axis] < size[axis] && beyond(rect.max[axis]).is_positive();
+            let above = rect.max[axis] < size && beyond(rect.max[axis]).is_positive();
             if below || above {
                 return Err(format!("{:?} is not in {rect:?}", point.pixel()));
             }
@@ -348,7 +348,7 @@ fn percent(part: u64, whole: u64) -> f64 {
 
 #[test]
 fn a_million_boxes_against_exact_arithmetic() {
-    let (cases, seed) = (setting("TERCET_CASES", 1_000_000), setting("TERCET_SEED", 0x7e7c_e7));
+    let (cases, seed) = (setting("TERCET_CASES", 1_000_000), setting("TERCET_SEED", 0x7e7c_e700));
     println!("{cases} cases, seed {seed} (TERCET_CASES, TERCET_SEED)");
     let tally = sweep(cases, seed, |_| (), |fault| panic!("{fault}"));
     println!("{tally:?}");

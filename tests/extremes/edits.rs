@@ -86,7 +86,7 @@ impl Edited {
         prop_assert_eq!(report.first_bad.len(), bad.min(SyncReport::NAMED));
         for named in &report.first_bad {
             let told = self.told.get(&named.entity);
-            prop_assert!(told.is_some_and(|told| is_bad(told)), "{:?} is not bad", named);
+            prop_assert!(told.is_some_and(is_bad), "{:?} is not bad", named);
         }
         for object in scene.objects() {
             let told = &self.told[&object.object.entity()];
