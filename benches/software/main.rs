@@ -2,7 +2,7 @@
 //! resolution, beside a plain depth buffer that goes sample by sample.
 //!
 //! All ways take turns, round by round, in one process; the tables have medians, and ratios of
-//! medians to the plain way's and to one thread's. *Best* is the shortest of all rounds, which says
+//! medians to the plain way's (which draws the same faces) and to one thread's. *Best* is the shortest of all rounds, which says
 //! more where others use the machine. Drawing includes clearing; everything is in the
 //! frustum and comes from near to far. `cargo bench --bench software`; after `--`, `--quick` makes
 //! it short.
@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use rand::RngExt;
 use tercet::geom::{Proxy, View};
-use tercet::query::software::{SimdLevel, SoftwareQueries};
+use tercet::query::software::{Faces, SimdLevel, SoftwareQueries};
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 
 use plain::Plain;
@@ -25,9 +25,9 @@ fn main() {
     let rounds = if quick { 3 } else { 11 };
     let sizes: &[_] = if quick { &[(1280, 720)] } else { &[(640, 360), (1280, 720), (1920, 1080)] };
     println!(
-        "| scene | size | way | threads | Mtri/s | best | skipped | / plain | / 1 thread | ns a count | best | plain / it |"
+        "| scene | size | way | faces | threads | Mtri/s | best | skipped | / plain | / 1 thread | ns a count | best | plain / it |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     let scenes = [
         Scene::boxes("boxes", 11_000, |dice| dice.random_range(5.0..50.0)),
         Scene::boxes("small boxes", 11_000, |dice| f32::sqrt(dice.random_range(5.0..50.0))),
@@ -41,7 +41,12 @@ fn main() {
 }
 
 /// A way to draw and to count.
-enum Way {
+struct Way {
+    by: By,
+    faces: Faces,
+}
+
+enum By {
     Plain(Box<Plain>),
     Ours { level: SimdLevel, threads: usize, queries: Box<SoftwareQueries>, pool: rayon::ThreadPool },
 }
@@ -57,19 +62,18 @@ struct Took {
 fn compare(scene: &Scene, width: u32, height: u32, rounds: usize) {
     let view = scene::view(width, height);
     let proxies = scene.proxies(&view);
-    let mut ways = vec![Way::Plain(Box::new(Plain::new()))];
-    for level in SimdLevel::ALL {
-        if level > SimdLevel::detect() {
-            continue;
-        }
-        for threads in [1, 2] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-            ways.push(Way::Ours {
-                level,
-                threads,
-                queries: Box::new(SoftwareQueries::with_level(level)),
-                pool,
-            });
+    let mut ways = Vec::new();
+    let best = SimdLevel::detect();
+    for faces in [Faces::Both, Faces::Front] {
+        ways.push(Way { by: By::Plain(Box::new(Plain::new())), faces });
+        let levels = SimdLevel::ALL.into_iter().filter(|&level| level <= best);
+        // What culling back faces gains is shown at the best level only.
+        for level in levels.filter(|&level| faces == Faces::Both || level == best) {
+            for threads in [1, 2] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+                let queries = Box::new(SoftwareQueries::with_level(level));
+                ways.push(Way { by: By::Ours { level, threads, queries, pool }, faces });
+            }
         }
     }
     let mut took = vec![Vec::new(); ways.len()];
@@ -83,31 +87,38 @@ fn compare(scene: &Scene, width: u32, height: u32, rounds: usize) {
     let drawing = Summary::new(took.iter().map(|took| took.iter().map(|t| t.draw).collect()));
     let counting = Summary::new(took.iter().map(|took| took.iter().map(|t| t.count).collect()));
     let triangles = scene.triangles() as f64;
-    let mut one_thread = f64::NAN;
+    let (mut one_thread, mut plain) = (f64::NAN, 0);
     for (i, way) in ways.iter().enumerate() {
-        let (name, threads, drawn) = match way {
-            Way::Plain(_) => ("plain".into(), 1, triangles),
-            Way::Ours { level, threads, queries, .. } => {
+        let (name, threads, drawn) = match &way.by {
+            By::Plain(_) => ("plain".into(), 1, triangles),
+            By::Ours { level, threads, queries, .. } => {
                 (format!("{level:?}"), *threads, queries.stats().triangles as f64)
             }
         };
+        let faces = match way.faces {
+            Faces::Both => "both",
+            Faces::Front => "front",
+        };
         let draw = drawing[i];
         let count = counting[i];
+        if matches!(way.by, By::Plain(_)) {
+            plain = i;
+        }
         if threads == 1 {
             one_thread = draw.median;
         }
         let each = 1e9 / proxies.len() as f64;
         println!(
-            "| {} | {width} × {height} | {name} | {threads} | {:.1} | {:.1} | {:.0} % | {:.1} | {:.2} | {:.0} | {:.0} | {:.1} |",
+            "| {} | {width} × {height} | {name} | {faces} | {threads} | {:.1} | {:.1} | {:.0} % | {:.1} | {:.2} | {:.0} | {:.0} | {:.1} |",
             scene.name,
             1e-6 * triangles / draw.median,
             1e-6 * triangles / draw.best,
             100.0 * (1.0 - drawn / triangles),
-            drawing[0].median / draw.median,
+            drawing[plain].median / draw.median,
             one_thread / draw.median,
             each * count.median,
             each * count.best,
-            counting[0].median / count.median,
+            counting[plain].median / count.median,
         );
     }
 }
@@ -131,23 +142,24 @@ impl Summary {
 
 impl Way {
     fn run(&mut self, scene: &Scene, view: &View, proxies: &[Proxy]) -> Took {
-        match self {
-            Self::Plain(plain) => {
+        let faces = self.faces;
+        match &mut self.by {
+            By::Plain(plain) => {
                 let start = Instant::now();
-                plain.draw(view, &scene.calls);
+                plain.draw(view, faces, &scene.calls);
                 let draw = start.elapsed().as_secs_f64();
                 let start = Instant::now();
                 let visible: u64 = proxies.iter().map(|proxy| u64::from(plain.dual(proxy).0)).sum();
                 std::hint::black_box(visible);
                 Took { draw, count: start.elapsed().as_secs_f64() }
             }
-            Self::Ours { queries, pool, .. } => pool.install(|| {
+            By::Ours { queries, pool, .. } => pool.install(|| {
                 let start = Instant::now();
                 queries.begin(view).expect("begin");
                 queries
                     .draw(|pass| {
                         for (mesh, placed) in &scene.calls {
-                            pass.draw_mesh(mesh, placed);
+                            pass.draw_faces(mesh, 0, faces, placed);
                         }
                     })
                     .expect("draw");

@@ -3,6 +3,7 @@
 
 use glam::{Affine3A, Mat4, Vec3};
 use tercet::geom::{Proxy, View};
+use tercet::query::software::Faces;
 use tercet::scene::mesh::Mesh;
 
 const SUBPIXELS: f32 = 256.0;
@@ -21,8 +22,8 @@ impl Plain {
         Self { width: 0, height: 0, depth: Vec::new(), vertices: Vec::new() }
     }
 
-    /// Clears and draws. Everything lies before the camera.
-    pub fn draw(&mut self, view: &View, calls: &[(Mesh, Affine3A)]) {
+    /// Clears and draws. Everything lies before the camera, and nothing is mirrored.
+    pub fn draw(&mut self, view: &View, faces: Faces, calls: &[(Mesh, Affine3A)]) {
         (self.width, self.height) = (view.viewport().width as usize, view.viewport().height as usize);
         self.depth.clear();
         self.depth.resize(self.width * self.height, 0.0);
@@ -40,13 +41,17 @@ impl Plain {
                 (x.round_ties_even() as i64, y.round_ties_even() as i64, clip.z * inverse)
             }));
             for corners in level.indices.as_chunks::<3>().0 {
-                self.triangle(corners.map(|i| self.vertices[i as usize]));
+                self.triangle(faces, corners.map(|i| self.vertices[i as usize]));
             }
         }
     }
 
-    fn triangle(&mut self, [a, mut b, mut c]: [(i64, i64, f32); 3]) {
+    fn triangle(&mut self, faces: Faces, [a, mut b, mut c]: [(i64, i64, f32); 3]) {
         let mut area = edge(a, b, c.0, c.1);
+        // Rows go down: clockwise is positive.
+        if area > 0 && faces == Faces::Front {
+            return;
+        }
         if area < 0 {
             (b, c) = (c, b);
             area = -area;

@@ -100,9 +100,9 @@ fn from_near_to_far(mut calls: Vec<(Mesh, Affine3A)>) -> Vec<(Mesh, Affine3A)> {
 
 fn unit_cube() -> Mesh {
     let positions = Aabb::from_center(Vec3::ZERO, Vec3::splat(0.5)).corners().to_vec();
-    // Corner i lies on the greater side of axis k where bit k of i is set.
+    // Corner i lies on the greater side of axis k where bit k of i is set. Fronts are outside.
     let faces: [[u32; 4]; 6] =
         [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
-    let indices = faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
+    let indices = faces.iter().flat_map(|&[a, b, c, d]| [a, c, b, a, d, c]).collect();
     Mesh::new("cube", positions, indices).expect("a cube")
 }

@@ -35,6 +35,20 @@ pub(crate) struct Meshlets {
     positions: [Vec<[f32; REGISTER]>; 3],
     corners: [Vec<[u8; REGISTER]>; 3],
     triangles: Vec<[u32; REGISTER]>,
+    single: Option<Single>,
+}
+
+/// A level so small that its vertices fill one register at most, and its triangles another.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Single {
+    /// Coordinates, an axis after the other; those beyond the last vertex are copies of the first.
+    pub(crate) positions: [[f32; REGISTER]; 3],
+    /// First, second and third corners of each triangle: vertices.
+    pub(crate) corners: [[i32; REGISTER]; 3],
+    /// Which triangle of the level it is.
+    pub(crate) triangles: [u32; REGISTER],
+    /// How many triangles there are.
+    pub(crate) count: usize,
 }
 
 /// The boxes around sixteen parts, in object space. Those beyond the last part are copies of it.
@@ -69,7 +83,15 @@ impl Meshlets {
             builder.add(level, triangle, [level.indices[at], level.indices[at + 1], level.indices[at + 2]]);
         }
         builder.finish(level);
-        builder.made
+        let mut made = builder.made;
+        made.single = made.find_single();
+        made
+    }
+
+    /// The whole level, where it is small enough.
+    #[inline]
+    pub(crate) fn single(&self) -> Option<&Single> {
+        self.single.as_ref()
     }
 
     /// How many parts there are.
@@ -95,6 +117,18 @@ impl Meshlets {
             triangles: &self.triangles[triangles][..t],
             count: usize::from(part.triangles),
         }
+    }
+
+    fn find_single(&self) -> Option<Single> {
+        let axes = self.positions.each_ref().map(Vec::as_slice);
+        let corners = self.corners.each_ref().map(Vec::as_slice);
+        let ([[x], [y], [z]], [[a], [b], [c]]) = (axes, corners) else { return None };
+        (self.parts.len() == 1).then_some(Single {
+            positions: [*x, *y, *z],
+            corners: [*a, *b, *c].map(|corners| corners.map(i32::from)),
+            triangles: self.triangles[0],
+            count: usize::from(self.parts[0].triangles),
+        })
     }
 
     /// Stores the box of the part to come.

@@ -2,6 +2,7 @@
 
 mod clipping;
 mod coverage;
+mod faces;
 mod oracle;
 mod parts;
 #[path = "../support/proxies.rs"]

@@ -10,6 +10,7 @@
 use rayon::prelude::*;
 
 use super::clip::{Fan, clip};
+use super::compact;
 use super::footprint::{Extents, Footprint, extents};
 use super::isa::{ALL, Isa, LANES, Mask, store_each};
 use super::large::{self, Triangle};
@@ -22,6 +23,7 @@ use super::simd;
 use super::sink::{Id, Rows, Sink};
 use super::tiles::Room;
 use super::vertex::{Projected, Screen, clip_position};
+use super::winding::Winding;
 use crate::geom::{PixelRect, View};
 use crate::scene::meshlets::Part;
 
@@ -58,10 +60,11 @@ pub(crate) struct Work {
 #[derive(Debug, Default)]
 pub(crate) struct List {
     calls: Vec<CallInBand>,
-    /// Those that were not hidden.
-    drawn: Vec<u32>,
+    /// Those that were not hidden and reach into other bands, which may have drawn them too.
+    shared: Vec<u32>,
     parts: Vec<PartInBand>,
-    kept: u64,
+    /// What was done, but for calls and triangles of `shared`.
+    work: Work,
     vertices: Projected,
     room: Room,
 }
@@ -97,7 +100,7 @@ impl Bands {
         level: SimdLevel,
         view: &View,
         calls: &[DrawCall],
-        sinks: impl Iterator<Item = S>,
+        sinks: impl IndexedParallelIterator<Item = S>,
     ) -> Work {
         let screen = Screen::new(view);
         self.footprints.clear();
@@ -109,13 +112,12 @@ impl Bands {
         }
         let triangles = self.list(view, calls);
         let frame = Frame { screen, calls, footprints: &self.footprints };
-        let bands = self.lists.iter_mut().zip(sinks);
+        let bands = self.lists.par_iter_mut().zip(sinks);
         let run = |(list, mut sink): (&mut List, S)| simd::band(level, &frame, list, &mut sink);
-        if triangles < SHARED_FROM || rayon::current_num_threads() == 1 {
-            bands.for_each(run);
+        if triangles < SHARED_FROM {
+            bands.with_min_len(usize::MAX).for_each(run);
         } else {
-            let bands: Vec<_> = bands.collect();
-            bands.into_par_iter().with_max_len(1).for_each(run);
+            bands.with_max_len(1).for_each(run);
         }
         self.sum(calls)
     }
@@ -126,8 +128,8 @@ impl Bands {
         self.lists.resize_with(bands, List::default);
         for list in &mut self.lists {
             list.calls.clear();
-            list.drawn.clear();
-            list.kept = 0;
+            list.shared.clear();
+            list.work = Work::default();
         }
         let mut triangles = 0;
         for (index, (footprint, call)) in self.footprints.iter().zip(calls).enumerate() {
@@ -149,8 +151,10 @@ impl Bands {
         self.drawn.resize(calls.len(), false);
         let mut work = Work::default();
         for list in &self.lists {
-            work.kept += list.kept;
-            for &index in &list.drawn {
+            work.kept += list.work.kept;
+            work.calls += list.work.calls;
+            work.triangles += list.work.triangles;
+            for &index in &list.shared {
                 if !std::mem::replace(&mut self.drawn[index as usize], true) {
                     work.calls += 1;
                     work.triangles += calls[index as usize].triangle_count() as u64;
@@ -169,19 +173,35 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
     }
     sink.begin();
     let rows = sink.rows();
-    let List { calls, drawn, parts, kept, vertices, room } = list;
+    let List { calls, shared, parts, work, vertices, room } = list;
     for (at, &CallInBand { call: index, nearest, rect }) in calls.iter().enumerate() {
         // The app's order is not the band's: calls lie far apart in memory.
         if let Some(soon) = calls.get(at + AHEAD) {
-            simd::prefetch(&frame.calls[soon.call as usize]);
-            simd::prefetch(&frame.footprints[soon.call as usize]);
+            let (call, footprint) = (&frame.calls[soon.call as usize], &frame.footprints[soon.call as usize]);
+            simd::prefetch(&call.mesh);
+            simd::prefetch(&footprint.clip_from_object);
+            simd::prefetch(&footprint.nearest);
         }
         if !sink.wants(index) || sink.hides::<I>(&rect, nearest) {
             continue;
         }
-        drawn.push(index);
         let (call, footprint) = (&frame.calls[index as usize], &frame.footprints[index as usize]);
+        if footprint.rect == Some(rect) {
+            work.calls += 1;
+            work.triangles += call.triangle_count() as u64;
+        } else {
+            shared.push(index);
+        }
         let meshlets = call.mesh.meshlets(call.level);
+        let winding = Winding::new(&frame.screen, call);
+        if footprint.compact
+            && let Some(single) = meshlets.single()
+        {
+            let matrix = &footprint.clip_from_object;
+            let whole = compact::Whole { matrix, single, rect, winding, call: index };
+            work.kept += u64::from(whole.draw::<I, S>(&frame.screen, room, sink));
+            continue;
+        }
         parts.clear();
         let whole = meshlets.len() == 1;
         if whole {
@@ -197,7 +217,7 @@ pub(crate) fn band<I: Isa, S: Sink>(frame: &Frame<'_>, list: &mut List, sink: &m
             // A mesh of one part is as large as the call, and that is not hidden.
             if whole || (sink.wants(index) && !sink.hides::<I>(&part.rect, part.nearest)) {
                 let part = meshlets.part(part.part as usize);
-                *kept += draw_part::<I, S>(frame, index, &part, vertices, room, sink);
+                work.kept += draw_part::<I, S>(frame, index, &part, winding, vertices, room, sink);
             }
         }
     }
@@ -245,6 +265,7 @@ fn draw_part<I: Isa, S: Sink>(
     frame: &Frame<'_>,
     call: u32,
     part: &Part<'_>,
+    winding: Winding,
     vertices: &mut Projected,
     room: &mut Room,
     sink: &mut S,
@@ -271,10 +292,10 @@ fn draw_part<I: Isa, S: Sink>(
             corners.nearness[k] = I::look_up_f(&vertices.nearness, at);
         }
         let ids = Ids { call, triangles: if S::WANTS_IDS { Some(triangles) } else { None } };
-        kept += raster::triangles::<I, S>(&corners, lanes, ids, room, sink);
+        kept += raster::triangles::<I, S>(&corners, lanes, winding, ids, room, sink);
     }
     for (triangle, id) in room.large.drain(..) {
-        large::walk::<I, S>(&triangle, id, sink);
+        large::walk::<I, S>(&triangle, winding, id, sink);
     }
     u64::from(kept)
 }

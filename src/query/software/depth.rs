@@ -1,5 +1,7 @@
 //! The depth buffer and its sink.
 
+use rayon::prelude::*;
+
 use super::bands::BAND_ROWS;
 use super::hi_z::{Base, HiZ, STALE};
 use super::isa::{Isa, LANES, Mask};
@@ -33,12 +35,10 @@ impl Depth {
 
     /// Clears what nothing was drawn on.
     pub(crate) fn settle(&mut self) {
-        let (many, cleared) = (self.blocks_a_band(), self.cleared);
-        let rows = self.rows();
-        let bands = self.blocks.chunks_mut(many).zip(&mut self.pending).zip(rows);
-        for ((blocks, pending), rows) in bands {
+        let (many, cleared, rows) = (self.blocks_a_band(), self.cleared, self.rows_of());
+        for (band, (blocks, pending)) in self.blocks.chunks_mut(many).zip(&mut self.pending).enumerate() {
             if std::mem::take(pending) {
-                clear(blocks, &rows, cleared);
+                clear(blocks, &rows(band), cleared);
             }
         }
     }
@@ -64,14 +64,22 @@ impl Depth {
     }
 
     /// What each band of rows holds, from the top.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = Rows> + use<> {
+    pub(crate) fn rows(&self) -> impl IndexedParallelIterator<Item = Rows> + use<> {
+        (0..self.pending.len()).into_par_iter().map(self.rows_of())
+    }
+
+    /// What a band of rows holds.
+    fn rows_of(&self) -> impl Fn(usize) -> Rows + Send + Sync + Copy + use<> {
         let (width, height, blocks) = (self.width, self.height, self.across);
-        (0..height).step_by(BAND_ROWS as usize).map(move |first| Rows {
-            first: first as i32,
-            last: (first + BAND_ROWS).min(height) as i32 - 1,
-            last_column: width as i32 - 1,
-            blocks,
-        })
+        move |band| {
+            let first = band as u32 * BAND_ROWS;
+            Rows {
+                first: first as i32,
+                last: (first + BAND_ROWS).min(height) as i32 - 1,
+                last_column: width as i32 - 1,
+                blocks,
+            }
+        }
     }
 
     /// Blocks a band of rows; the last one has fewer.
@@ -80,11 +88,14 @@ impl Depth {
     }
 
     /// One sink a band of rows, from the top.
-    pub(crate) fn sinks<'a>(&'a mut self, hi_z: &'a mut HiZ) -> impl Iterator<Item = DepthSink<'a>> {
+    pub(crate) fn sinks<'a>(
+        &'a mut self,
+        hi_z: &'a mut HiZ,
+    ) -> impl IndexedParallelIterator<Item = DepthSink<'a>> {
         let (many, rows) = (self.blocks_a_band(), self.rows());
         let base = hi_z.base();
-        let hierarchy = base.farthest.chunks_mut(many).zip(base.stale.chunks_mut(many));
-        let bands = self.blocks.chunks_mut(many).zip(&mut self.pending).zip(hierarchy);
+        let hierarchy = base.farthest.par_chunks_mut(many).zip(base.stale.par_chunks_mut(many));
+        let bands = self.blocks.par_chunks_mut(many).zip(&mut self.pending).zip(hierarchy);
         let cleared = self.cleared;
         bands.zip(rows).map(move |(((blocks, pending), (farthest, stale)), rows)| DepthSink {
             blocks,

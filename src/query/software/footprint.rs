@@ -4,9 +4,10 @@ use glam::{Mat4, Vec3, Vec4};
 
 use super::isa::{Isa, LANES, Mask, affine, magnitude};
 use super::pass::DrawCall;
-use super::vertex::{Screen, clip_from_object, snap_lanes};
+use super::setup::{first_sample, last_sample};
+use super::vertex::{Image, SUBPIXEL_BITS, Screen, clip_from_object, snap_lanes};
 use crate::geom::{Aabb, PixelRect, View};
-use crate::scene::meshlets::Boxes;
+use crate::scene::meshlets::{Boxes, Single};
 
 /// How far the f32 image of a point can lie from what is computed here, a component, as a share of
 /// the sum of magnitudes: a four-term dot product errs by less than 4.01·2⁻²⁴ of it, twice, and
@@ -23,22 +24,97 @@ pub(crate) struct Footprint {
     pub(crate) rect: Option<PixelRect>,
     /// No sample of the call is nearer.
     pub(crate) nearest: f32,
+    /// Whether its level is a [`Single`] that needs no clipping and is at most [`COMPACT_SIDE`]
+    /// pixels wide and high.
+    pub(crate) compact: bool,
 }
 
-/// Bounds what a draw call touches, from the corners of its mesh's box. O(1).
+/// See [`Footprint::compact`].
+const COMPACT_SIDE: i32 = 16;
+
+/// Bounds what a draw call touches: from its vertices if they are few, else from the corners of its
+/// mesh's box. O(1).
 #[inline(always)]
 pub(crate) fn footprint<I: Isa>(view: &View, screen: &Screen, call: &DrawCall) -> Footprint {
     let clip_from_object = clip_from_object(view.clip_from_world(), &call.world_from_object);
-    if call.triangle_count() == 0 {
-        return Footprint { clip_from_object, rect: None, nearest: f32::NEG_INFINITY };
+    let mut footprint =
+        Footprint { clip_from_object, rect: None, nearest: f32::NEG_INFINITY, compact: false };
+    let level = call.geometry();
+    if level.indices.is_empty() {
+        return footprint;
+    }
+    // Larger meshes are cut into parts when they are first seen, not before.
+    if level.positions.len() <= LANES
+        && let Some(single) = call.mesh.meshlets(call.level).single()
+        && let Some(bounds) = Snapped::new::<I>(screen, &clip_from_object, single)
+    {
+        footprint.rect = bounds.rect(screen);
+        footprint.nearest = bounds.nearest;
+        footprint.compact = bounds.is_compact();
+        return footprint;
     }
     let corners = Extremes::new::<I>(&clip_from_object, &call.mesh.bounds(), screen.sign);
-    if corners.outside() {
-        return Footprint { clip_from_object, rect: None, nearest: f32::NEG_INFINITY };
+    if !corners.outside() {
+        let (rect, nearest) = corners.extent(screen).unwrap_or((screen.whole(), f32::INFINITY));
+        footprint.rect = (rect.x0 < rect.x1 && rect.y0 < rect.y1).then_some(rect);
+        footprint.nearest = nearest;
     }
-    let (rect, nearest) = corners.extent(screen).unwrap_or((screen.whole(), f32::INFINITY));
-    let rect = (rect.x0 < rect.x1 && rect.y0 < rect.y1).then_some(rect);
-    Footprint { clip_from_object, rect, nearest }
+    footprint
+}
+
+/// The extremes of sixteen vertices on the screen: exactly what is drawn.
+struct Snapped {
+    /// In subpixels.
+    least: [i32; 2],
+    greatest: [i32; 2],
+    nearest: f32,
+}
+
+impl Snapped {
+    /// None if a vertex needs clipping.
+    #[inline(always)]
+    fn new<I: Isa>(screen: &Screen, m: &Mat4, single: &Single) -> Option<Self> {
+        let [x, y, z] = &single.positions;
+        let image = Image::<I>::new(screen, m, [x, y, z]);
+        if image.beyond != [0; 3] {
+            return None;
+        }
+        // Without clipping, coordinates are below 2²³: exact as floats.
+        let (x, y, zero) = (I::to_f(image.x), I::to_f(image.y), I::splat_f(0.0));
+        let mut runs = [[0.0; LANES]; LANES];
+        runs[0] = I::store_f(x);
+        runs[1] = I::store_f(y);
+        runs[2] = I::store_f(I::sub_f(zero, x));
+        runs[3] = I::store_f(I::sub_f(zero, y));
+        runs[4] = I::store_f(I::sub_f(zero, image.nearness));
+        let least = I::store_f(I::least(&runs));
+        Some(Self {
+            least: [least[0] as i32, least[1] as i32],
+            greatest: [-least[2] as i32, -least[3] as i32],
+            nearest: -least[4],
+        })
+    }
+
+    /// The pixels of the viewport whose samples lie between the extremes.
+    #[inline(always)]
+    fn rect(&self, screen: &Screen) -> Option<PixelRect> {
+        let x0 = first_sample(self.least[0]).max(0);
+        let y0 = first_sample(self.least[1]).max(0);
+        let x1 = last_sample(self.greatest[0]).min(screen.width - 1) + 1;
+        let y1 = last_sample(self.greatest[1]).min(screen.height - 1) + 1;
+        (x0 < x1 && y0 < y1).then_some(PixelRect {
+            x0: x0 as u32,
+            y0: y0 as u32,
+            x1: x1 as u32,
+            y1: y1 as u32,
+        })
+    }
+
+    #[inline(always)]
+    fn is_compact(&self) -> bool {
+        let most = COMPACT_SIDE << SUBPIXEL_BITS;
+        self.greatest[0] - self.least[0] <= most && self.greatest[1] - self.least[1] <= most
+    }
 }
 
 /// The extremes of a box's corners in clip space and on the screen.

@@ -28,6 +28,8 @@ pub(crate) trait Isa {
     fn widen(v: &[u8; LANES]) -> Self::I;
     /// The table's entries at these indices, each below [`TABLE`].
     fn look_up(table: &[i32; TABLE], at: Self::I) -> Self::I;
+    /// The same of a small table: indices below [`LANES`].
+    fn pick(table: &[i32; LANES], at: Self::I) -> Self::I;
     fn add(a: Self::I, b: Self::I) -> Self::I;
     fn sub(a: Self::I, b: Self::I) -> Self::I;
     fn mul(a: Self::I, b: Self::I) -> Self::I;
@@ -49,6 +51,7 @@ pub(crate) trait Isa {
     fn load_f(v: &[f32; LANES]) -> Self::F;
     fn store_f(v: Self::F) -> [f32; LANES];
     fn look_up_f(table: &[f32; TABLE], at: Self::I) -> Self::F;
+    fn pick_f(table: &[f32; LANES], at: Self::I) -> Self::F;
     /// The nearest float, ties to even.
     fn to_f(a: Self::I) -> Self::F;
     fn bits(a: Self::F) -> Self::I;
@@ -103,6 +106,15 @@ pub(crate) fn store_each_f<I: Isa, const N: usize>(v: [I::F; N]) -> [[f32; LANES
         out[i] = I::store_f(v[i]);
     }
     out
+}
+
+/// The sums of each and each.
+#[inline(always)]
+pub(crate) fn add_each<I: Isa, const N: usize>(mut a: [I::I; N], b: [I::I; N]) -> [I::I; N] {
+    for i in 0..N {
+        a[i] = I::add(a[i], b[i]);
+    }
+    a
 }
 
 /// One lane of each.
@@ -189,6 +201,10 @@ impl Isa for Portable {
         map(at, |i| table[i as usize % TABLE])
     }
     #[inline(always)]
+    fn pick(table: &[i32; LANES], at: Self::I) -> Self::I {
+        map(at, |i| table[i as usize % LANES])
+    }
+    #[inline(always)]
     fn add(a: Self::I, b: Self::I) -> Self::I {
         zip(a, b, i32::wrapping_add)
     }
@@ -257,6 +273,10 @@ impl Isa for Portable {
     #[inline(always)]
     fn look_up_f(table: &[f32; TABLE], at: Self::I) -> Self::F {
         map(at, |i| table[i as usize % TABLE])
+    }
+    #[inline(always)]
+    fn pick_f(table: &[f32; LANES], at: Self::I) -> Self::F {
+        map(at, |i| table[i as usize % LANES])
     }
     #[inline(always)]
     fn to_f(a: Self::I) -> Self::F {

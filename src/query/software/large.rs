@@ -3,9 +3,10 @@
 
 use super::isa::{ALL, Isa, LANES, splat_each};
 use super::layout::{LANE_X, LANE_Y, TILE, TILE_BITS, within};
-use super::setup::Shading;
+use super::setup::{Shading, first_sample, last_sample};
 use super::sink::{Id, Sink};
 use super::vertex::{SUBPIXEL_BITS, SUBPIXELS};
+use super::winding::Winding;
 
 /// A triangle on the screen, by snapped corners.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,7 +26,7 @@ impl Triangle {
 /// The samples of an axis between three coordinates; the last may lie before the first.
 fn samples(v: [i32; 3]) -> (i32, i32) {
     let (low, high) = (v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
-    ((low + SUBPIXELS / 2 - 1) >> SUBPIXEL_BITS, (high - SUBPIXELS / 2) >> SUBPIXEL_BITS)
+    (first_sample(low), last_sample(high))
 }
 
 /// An edge function: its value at the first sample, and how it changes.
@@ -40,12 +41,12 @@ struct Edge {
 
 /// Rasterises a triangle.
 #[inline(always)]
-pub(crate) fn walk<I: Isa, S: Sink>(t: &Triangle, id: Id, sink: &mut S) {
+pub(crate) fn walk<I: Isa, S: Sink>(t: &Triangle, winding: Winding, id: Id, sink: &mut S) {
     let rows = sink.rows();
     let ((left, right), (top, bottom)) = (samples(t.x), samples(t.y));
     let (x0, x1) = (left.max(0), right.min(rows.last_column));
     let (y0, y1) = (top.max(rows.first), bottom.min(rows.last));
-    let Some((edges, nearness, area)) = edges(t, x0, y0) else { return };
+    let Some((edges, nearness, area)) = edges(t, winding, x0, y0) else { return };
     if x0 > x1 || y0 > y1 {
         return;
     }
@@ -109,20 +110,20 @@ pub(crate) fn walk<I: Isa, S: Sink>(t: &Triangle, id: Id, sink: &mut S) {
 }
 
 /// The edges of a triangle from the sample at a column and row on, wound clockwise, the nearness at
-/// the corners in that order, and twice the area; none without an area.
-fn edges(t: &Triangle, column: i32, row: i32) -> Option<([Edge; 3], [f32; 3], f64)> {
+/// the corners in that order, and twice the area; none without an area, or where it is not drawn.
+fn edges(t: &Triangle, winding: Winding, column: i32, row: i32) -> Option<([Edge; 3], [f32; 3], f64)> {
     let cross =
         |ax: i32, ay: i32, bx: i32, by: i32| i64::from(ax) * i64::from(by) - i64::from(ay) * i64::from(bx);
     let Triangle { mut x, mut y, nearness: mut n } = *t;
     let mut area = cross(x[1] - x[0], y[1] - y[0], x[2] - x[0], y[2] - y[0]);
+    if area == 0 || !winding.draws(area < 0) {
+        return None;
+    }
     if area < 0 {
         x.swap(1, 2);
         y.swap(1, 2);
         n.swap(1, 2);
         area = -area;
-    }
-    if area == 0 {
-        return None;
     }
     let centre = |sample: i32| (sample << SUBPIXEL_BITS) + SUBPIXELS / 2;
     let edges = std::array::from_fn(|k| {

@@ -6,7 +6,9 @@
 //! | `bands` | who does what, in which order, on which thread |
 //! | `footprint` | a draw call, or a part of one, against the view |
 //! | `vertex`, `clip` | object space to snapped screen coordinates |
+//! | `winding` | which triangles show the side that is drawn |
 //! | `setup`, `raster`, `tiles`, `walk`, `large` | triangles to samples |
+//! | `compact` | small meshes that cover few pixels, all at once |
 //! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
 //! | `count` | answers to questions |
 //! | `sweep` | answers to sweeps, object by object |
@@ -15,6 +17,7 @@
 
 mod bands;
 mod clip;
+mod compact;
 mod count;
 mod depth;
 mod footprint;
@@ -33,6 +36,7 @@ mod tiles;
 mod vertex;
 mod visibility;
 mod walk;
+mod winding;
 
 use std::ops::Range;
 
@@ -40,7 +44,7 @@ use rayon::prelude::*;
 
 pub use depth::DepthImage;
 pub use level::SimdLevel;
-pub use pass::{DrawCall, SoftwarePass};
+pub use pass::{DrawCall, Faces, SoftwarePass};
 pub(crate) use simd::prefetch;
 pub use sweep::{Pyramid, PyramidLevel};
 pub(crate) use visibility::Snapshot;
@@ -64,8 +68,8 @@ pub struct SoftwareStats {
     pub skipped_calls: u64,
     /// Triangles of the draw calls that were not skipped.
     pub triangles: u64,
-    /// Triangles of those that had a sample in their bounding box, but for those of parts that were
-    /// hidden where they begin. What clipping leaves of a triangle counts by pieces.
+    /// Triangles of those that had a sample in their bounding box, whichever side they show, but for
+    /// those of parts that were hidden where they begin. What clipping leaves of a triangle counts by pieces.
     pub rasterised: u64,
     /// Boxes asked about.
     pub boxes: u64,

@@ -10,9 +10,10 @@ use super::isa::{Isa, LANES, Mask, of_lane, store_each, store_each_f};
 use super::large::Triangle;
 use super::layout::{BLOCK, BLOCK_BITS, BLOCK_PIXELS, TILE, TILE_BITS};
 use super::setup::{Corners, SMALL_EXTENT, Setup, first_samples, last_samples};
-use super::sink::{Id, Sink};
+use super::sink::{Id, Rows, Sink};
 use super::tiles::{LISTED_SIDE, Room};
 use super::walk::Stored;
+use super::winding::Winding;
 
 /// The most sample columns or rows of a triangle that is sampled among others, a lane each.
 const TINY_SIDE: i32 = 3;
@@ -46,27 +47,15 @@ impl Ids<'_> {
 pub(crate) fn triangles<I: Isa, S: Sink>(
     corners: &Corners<I>,
     lanes: Mask,
+    winding: Winding,
     ids: Ids<'_>,
     room: &mut Room,
     sink: &mut S,
 ) -> u32 {
-    let rows = sink.rows();
-    let Corners { x, y, .. } = corners;
-    let (left, right) = (I::min(I::min(x[0], x[1]), x[2]), I::max(I::max(x[0], x[1]), x[2]));
-    let (top, bottom) = (I::min(I::min(y[0], y[1]), y[2]), I::max(I::max(y[0], y[1]), y[2]));
-    let above = first_samples::<I>(top);
-    let first = [I::max(first_samples::<I>(left), I::splat(0)), I::max(above, I::splat(rows.first))];
-    let last = [
-        I::min(last_samples::<I>(right), I::splat(rows.last_column)),
-        I::min(last_samples::<I>(bottom), I::splat(rows.last)),
-    ];
-    let kept = lanes & !(I::gt(first[0], last[0]) | I::gt(first[1], last[1]));
+    let Bounds { first, last, kept, begin_here, larger } = Bounds::new(corners, lanes, sink.rows());
     if kept == 0 {
         return 0;
     }
-    let begin_here = if rows.first == 0 { kept } else { kept & I::gt(above, I::splat(rows.first - 1)) };
-    let extent = I::splat(SMALL_EXTENT);
-    let larger = kept & (I::gt(I::sub(right, left), extent) | I::gt(I::sub(bottom, top), extent));
     let side = [I::sub(last[0], first[0]), I::sub(last[1], first[1])];
     let wide = I::splat(TINY_SIDE - 1);
     let mut tiny = kept & !larger & !(I::gt(side[0], wide) | I::gt(side[1], wide));
@@ -81,6 +70,8 @@ pub(crate) fn triangles<I: Isa, S: Sink>(
         // Of the first sample, its tile or its block.
         let grid = I::blend(walked, I::blend(listed, I::splat(-1), I::splat(-TILE)), I::splat(-BLOCK));
         let setup = Setup::new(corners, I::and(first[0], grid), I::and(first[1], grid));
+        let drawn = winding.drawn(setup.turned);
+        let (tiny, listed, walked) = (tiny & drawn, listed & drawn, walked & drawn);
         if tiny != 0 {
             sample_tiny::<I, S>(&setup, tiny, first, side, ids, sink);
         }
@@ -112,6 +103,40 @@ pub(crate) fn triangles<I: Isa, S: Sink>(
         }
     }
     begin_here.count_ones()
+}
+
+/// Where the samples of sixteen triangles can lie in a band.
+pub(crate) struct Bounds<I: Isa> {
+    /// First columns and rows.
+    pub(crate) first: [I::I; 2],
+    /// Last columns and rows.
+    pub(crate) last: [I::I; 2],
+    /// The triangles that have a sample in their bounding box.
+    pub(crate) kept: Mask,
+    /// Those of them that have none in a band before.
+    pub(crate) begin_here: Mask,
+    /// Those of them that are larger than [`SMALL_EXTENT`].
+    pub(crate) larger: Mask,
+}
+
+impl<I: Isa> Bounds<I> {
+    #[inline(always)]
+    pub(crate) fn new(corners: &Corners<I>, lanes: Mask, rows: Rows) -> Self {
+        let Corners { x, y, .. } = corners;
+        let (left, right) = (I::min(I::min(x[0], x[1]), x[2]), I::max(I::max(x[0], x[1]), x[2]));
+        let (top, bottom) = (I::min(I::min(y[0], y[1]), y[2]), I::max(I::max(y[0], y[1]), y[2]));
+        let above = first_samples::<I>(top);
+        let first = [I::max(first_samples::<I>(left), I::splat(0)), I::max(above, I::splat(rows.first))];
+        let last = [
+            I::min(last_samples::<I>(right), I::splat(rows.last_column)),
+            I::min(last_samples::<I>(bottom), I::splat(rows.last)),
+        ];
+        let kept = lanes & !(I::gt(first[0], last[0]) | I::gt(first[1], last[1]));
+        let begin_here = if rows.first == 0 { kept } else { kept & I::gt(above, I::splat(rows.first - 1)) };
+        let extent = I::splat(SMALL_EXTENT);
+        let larger = kept & (I::gt(I::sub(right, left), extent) | I::gt(I::sub(bottom, top), extent));
+        Self { first, last, kept, begin_here, larger }
+    }
 }
 
 /// Samples triangles of at most [`TINY_SIDE`] sample columns and rows: one step looks at one

@@ -2,13 +2,15 @@
 //!
 //! Coverage is decided by edge functions in integers: a sample (a pixel's centre) is covered where
 //! all three are positive, or zero on a top or left edge. Depth is interpolated from the edge
-//! functions, rounded once to f32: `n0 + (λ1·(n1 - n0) + λ2·(n2 - n0))`, `λ = edge / area`, clamped
-//! to the triangle's own range. Each λ lies in [0, 1] and errs by less than 2 ulps, each
-//! difference and product by half an ulp of at most the largest |nearness|, so the sum errs by a
-//! few ulps of that. All paths share [`Shading::nearness`]; the same triangle yields the same bits
+//! functions, rounded once to f32: `n0 + (edge1·g1 + edge2·g2)`, `gk = (nk - n0) / area`, clamped
+//! to the triangle's own range. A product `edge·g` is a share in [0, 1] of a difference of
+//! nearness, and six roundings are in it: of the difference, the area, its reciprocal, their
+//! product, the edge function and the product with it. So the sum errs by a few ulps of the
+//! largest |nearness|. All paths share [`Shading::nearness`]; the same triangle yields the same bits
 //! in each of them.
 
 use super::isa::{Isa, LANES, Mask, magnitude, of_lane, splat_each, store_each_f};
+use super::layout::{TILE, TILE_BITS};
 use super::vertex::{SUBPIXEL_BITS, SUBPIXELS};
 
 /// The longest side of a triangle's bounding box, in subpixels, that is rasterised in i32: an edge
@@ -34,8 +36,12 @@ pub(crate) struct Setup<I: Isa> {
     pub(crate) step_y: [I::I; 3],
     /// Covered is what is greater: -1 for a top or left edge, 0 for the others.
     pub(crate) limit: [I::I; 3],
+    /// Twice the area: what the three edge functions add up to at every sample.
+    pub(crate) area: I::I,
     pub(crate) shading: Shading<I>,
-    /// Those that were wound the other way.
+    /// Three times the mean nearness of the corners.
+    mean: I::F,
+    /// Those that were wound counter-clockwise.
     pub(crate) turned: Mask,
 }
 
@@ -43,9 +49,7 @@ impl<I: Isa> Setup<I> {
     /// Which of some triangles, at least one, has the nearest mean.
     #[inline(always)]
     pub(crate) fn nearest(&self, mut lanes: Mask) -> Mask {
-        let s = &self.shading;
-        let third = I::mul_f(I::add_f(s.along_1, s.along_2), I::splat_f(1.0 / 3.0));
-        let mean = I::store_f(I::add_f(s.base, third));
+        let mean = I::store_f(self.mean);
         let (mut found, mut most) = (0, f32::NEG_INFINITY);
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
@@ -86,7 +90,44 @@ impl<I: Isa> Setup<I> {
         }
         let area = I::max(area, I::sub(zero, area));
         let shading = Shading::new(n, I::to_f(area));
-        Self { edge, step_x, step_y, limit, shading, turned }
+        let mean = I::add_f(I::add_f(n[0], n[1]), n[2]);
+        Self { edge, area, step_x, step_y, limit, shading, mean, turned }
+    }
+}
+
+/// From tile to tile of sixteen triangles.
+pub(crate) struct TileSteps<I: Isa> {
+    /// Change of the edge functions from column to column of tiles.
+    pub(crate) step_x: [I::I; 3],
+    /// The same from row to row.
+    pub(crate) step_y: [I::I; 3],
+    /// What an edge function at a tile's first pixel is above if the tile has a sample on its inner
+    /// side.
+    limit: [I::I; 3],
+}
+
+impl<I: Isa> TileSteps<I> {
+    #[inline(always)]
+    pub(crate) fn new(setup: &Setup<I>) -> Self {
+        const { assert!(TILE == 4 && TILE_BITS == 2) };
+        let zero = I::splat(0);
+        let (mut limit, mut step_x, mut step_y) = (setup.limit, setup.step_x, setup.step_y);
+        for k in 0..3 {
+            // Three pixels on, where the edge function rises.
+            let reach = I::add(I::max(step_x[k], zero), I::max(step_y[k], zero));
+            let reach = I::add(reach, I::shift_left::<1>(reach));
+            limit[k] = I::sub(limit[k], reach);
+            step_x[k] = I::shift_left::<TILE_BITS>(step_x[k]);
+            step_y[k] = I::shift_left::<TILE_BITS>(step_y[k]);
+        }
+        Self { step_x, step_y, limit }
+    }
+
+    /// The triangles that may cover a sample of a tile, given their edge functions at its first
+    /// pixel.
+    #[inline(always)]
+    pub(crate) fn met(&self, edge: &[I::I; 3]) -> Mask {
+        I::gt(edge[0], self.limit[0]) & I::gt(edge[1], self.limit[1]) & I::gt(edge[2], self.limit[2])
     }
 }
 
@@ -98,10 +139,11 @@ fn cross<I: Isa>(ax: I::I, ay: I::I, bx: I::I, by: I::I) -> I::I {
 /// The part of depth interpolation that is constant over a triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct Shading<I: Isa> {
-    pub(crate) inverse_area: I::F,
     pub(crate) base: I::F,
-    pub(crate) along_1: I::F,
-    pub(crate) along_2: I::F,
+    /// Change of nearness with the edge function opposite to corner 1.
+    pub(crate) gradient_1: I::F,
+    /// The same of corner 2.
+    pub(crate) gradient_2: I::F,
     pub(crate) least: I::F,
     pub(crate) greatest: I::F,
 }
@@ -109,27 +151,26 @@ pub(crate) struct Shading<I: Isa> {
 impl<I: Isa> Shading<I> {
     /// Every lane, to be taken up by [`Shading::of_lane`].
     #[inline(always)]
-    pub(crate) fn stored(&self) -> [[f32; LANES]; 6] {
-        let Self { inverse_area, base, along_1, along_2, least, greatest } = *self;
-        store_each_f::<I, 6>([inverse_area, base, along_1, along_2, least, greatest])
+    pub(crate) fn stored(&self) -> [[f32; LANES]; 5] {
+        let Self { base, gradient_1, gradient_2, least, greatest } = *self;
+        store_each_f::<I, 5>([base, gradient_1, gradient_2, least, greatest])
     }
 
     /// One triangle's, in all lanes.
     #[inline(always)]
-    pub(crate) fn of_lane(stored: &[[f32; LANES]; 6], lane: usize) -> Self {
-        let [inverse_area, base, along_1, along_2, least, greatest] =
-            splat_each::<I, 6>(of_lane(stored, lane));
-        Self { inverse_area, base, along_1, along_2, least, greatest }
+    pub(crate) fn of_lane(stored: &[[f32; LANES]; 5], lane: usize) -> Self {
+        let [base, gradient_1, gradient_2, least, greatest] = splat_each::<I, 5>(of_lane(stored, lane));
+        Self { base, gradient_1, gradient_2, least, greatest }
     }
 
     /// From the nearness at the corners and twice the area.
     #[inline(always)]
     pub(crate) fn new(n: [I::F; 3], area: I::F) -> Self {
+        let inverse_area = I::div_f(I::splat_f(1.0), area);
         Self {
-            inverse_area: I::div_f(I::splat_f(1.0), area),
             base: n[0],
-            along_1: I::sub_f(n[1], n[0]),
-            along_2: I::sub_f(n[2], n[0]),
+            gradient_1: I::mul_f(I::sub_f(n[1], n[0]), inverse_area),
+            gradient_2: I::mul_f(I::sub_f(n[2], n[0]), inverse_area),
             least: I::min_f(I::min_f(n[0], n[1]), n[2]),
             greatest: I::max_f(I::max_f(n[0], n[1]), n[2]),
         }
@@ -141,21 +182,24 @@ impl<I: Isa> Shading<I> {
     /// Nearness is linear over the screen, so it grows toward one corner of a tile by its change
     /// along both sides. Each of the terms here is a few roundings of 2⁻²⁴ away from its exact
     /// value, each sum at a sample as many from its own; 2⁻²⁰ of all magnitudes covers both. Below
-    /// the least normal number roundings are no shares any more: that number covers them.
+    /// the least normal number roundings are no shares any more: a gradient may be off by 2⁻¹⁵⁰, at
+    /// an edge function of 2³¹; `LEAST` covers that.
     #[inline(always)]
     pub(crate) fn rise(&self, step_x: &[I::I; 3], step_y: &[I::I; 3], side: f32) -> I::F {
         let zero = I::splat_f(0.0);
         let (mut rise, mut all) = (zero, zero);
         for step in [step_x, step_y] {
-            let one = I::mul_f(I::mul_f(I::to_f(step[1]), self.inverse_area), self.along_1);
-            let two = I::mul_f(I::mul_f(I::to_f(step[2]), self.inverse_area), self.along_2);
+            let one = I::mul_f(I::to_f(step[1]), self.gradient_1);
+            let two = I::mul_f(I::to_f(step[2]), self.gradient_2);
             rise = I::add_f(rise, I::max_f(I::add_f(one, two), zero));
             all = I::add_f(all, I::add_f(magnitude::<I>(one), magnitude::<I>(two)));
         }
         let sides = I::splat_f(side - 1.0);
-        let corners = I::add_f(magnitude::<I>(self.along_1), magnitude::<I>(self.along_2));
-        let all = I::add_f(I::mul_f(all, sides), I::add_f(corners, magnitude::<I>(self.base)));
-        let slack = I::add_f(I::mul_f(all, I::splat_f(SLACK)), I::splat_f(f32::MIN_POSITIVE));
+        // No corner differs more from the first one.
+        let corners = I::sub_f(self.greatest, self.least);
+        let corners = I::add_f(I::add_f(corners, corners), magnitude::<I>(self.base));
+        let all = I::add_f(I::mul_f(all, sides), corners);
+        let slack = I::add_f(I::mul_f(all, I::splat_f(SLACK)), I::splat_f(LEAST));
         I::add_f(I::mul_f(rise, sides), slack)
     }
 
@@ -163,8 +207,7 @@ impl<I: Isa> Shading<I> {
     /// first pixel, `rise` is what [`Shading::rise`] found for it.
     #[inline(always)]
     pub(crate) fn bound(&self, edge_1: I::F, edge_2: I::F, rise: I::F) -> I::F {
-        let one = I::mul_f(I::mul_f(edge_1, self.inverse_area), self.along_1);
-        let two = I::mul_f(I::mul_f(edge_2, self.inverse_area), self.along_2);
+        let (one, two) = (I::mul_f(edge_1, self.gradient_1), I::mul_f(edge_2, self.gradient_2));
         let n = I::add_f(self.base, I::add_f(one, two));
         let all = I::add_f(magnitude::<I>(one), magnitude::<I>(two));
         let bound = I::add_f(I::add_f(n, rise), I::mul_f(all, I::splat_f(SLACK)));
@@ -174,23 +217,35 @@ impl<I: Isa> Shading<I> {
     /// The nearness where the edge functions opposite to corners 1 and 2 have these values.
     #[inline(always)]
     pub(crate) fn nearness(&self, edge_1: I::F, edge_2: I::F) -> I::F {
-        let l1 = I::mul_f(edge_1, self.inverse_area);
-        let l2 = I::mul_f(edge_2, self.inverse_area);
-        let n = I::add_f(self.base, I::add_f(I::mul_f(l1, self.along_1), I::mul_f(l2, self.along_2)));
-        I::min_f(I::max_f(n, self.least), self.greatest)
+        let (one, two) = (I::mul_f(edge_1, self.gradient_1), I::mul_f(edge_2, self.gradient_2));
+        I::min_f(I::max_f(I::add_f(self.base, I::add_f(one, two)), self.least), self.greatest)
     }
 }
 
 /// 2⁻²⁰.
 const SLACK: f32 = 1.0 / 1_048_576.0;
+/// More than 2⁻¹¹⁷.
+const LEAST: f32 = 1e-35;
 
-/// The first sample column (or row) at or after coordinates in subpixels.
+/// The first sample column (or row) at or after a coordinate in subpixels.
+#[inline(always)]
+pub(crate) fn first_sample(v: i32) -> i32 {
+    (v + SUBPIXELS / 2 - 1) >> SUBPIXEL_BITS
+}
+
+/// The last sample column (or row) at or before a coordinate in subpixels.
+#[inline(always)]
+pub(crate) fn last_sample(v: i32) -> i32 {
+    (v - SUBPIXELS / 2) >> SUBPIXEL_BITS
+}
+
+/// [`first_sample`] of sixteen.
 #[inline(always)]
 pub(crate) fn first_samples<I: Isa>(v: I::I) -> I::I {
     I::shift_right::<SUBPIXEL_BITS>(I::add(v, I::splat(SUBPIXELS / 2 - 1)))
 }
 
-/// The last sample column (or row) at or before coordinates in subpixels.
+/// [`last_sample`] of sixteen.
 #[inline(always)]
 pub(crate) fn last_samples<I: Isa>(v: I::I) -> I::I {
     I::shift_right::<SUBPIXEL_BITS>(I::sub(v, I::splat(SUBPIXELS / 2)))
@@ -208,7 +263,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::super::isa::Portable;
-    use super::super::layout::{LANE_X, LANE_Y, TILE};
+    use super::super::layout::{LANE_X, LANE_Y};
     use super::*;
 
     type Lanes = Corners<Portable>;

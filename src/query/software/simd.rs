@@ -220,6 +220,24 @@ mod x86 {
             }
 
             #[inline(always)]
+            fn pick(table: &[i32; LANES], at: Self::I) -> Self::I {
+                let (at, mut out) = (Self::store(at), [0; LANES]);
+                for i in 0..LANES {
+                    out[i] = table[at[i] as usize % LANES];
+                }
+                Self::load(&out)
+            }
+
+            #[inline(always)]
+            fn pick_f(table: &[f32; LANES], at: Self::I) -> Self::F {
+                let (at, mut out) = (Self::store(at), [0.0; LANES]);
+                for i in 0..LANES {
+                    out[i] = table[at[i] as usize % LANES];
+                }
+                Self::load_f(&out)
+            }
+
+            #[inline(always)]
             fn compress(mut mask: Mask, a: Self::I) -> Self::I {
                 let (a, mut out, mut count) = (Self::store(a), [0; LANES], 0);
                 while mask != 0 {
@@ -382,6 +400,8 @@ mod x86 {
             load(v: &[i32; LANES]) -> __m512i = _mm512_loadu_si512(v.as_ptr().cast());
             store(v: __m512i) -> [i32; LANES] = std::mem::transmute::<__m512i, [i32; LANES]>(v);
             widen(v: &[u8; LANES]) -> __m512i = _mm512_cvtepu8_epi32(_mm_loadu_si128(v.as_ptr().cast()));
+            pick(table: &[i32; LANES], at: __m512i) -> __m512i = _mm512_permutexvar_epi32(at, Self::load(table));
+            pick_f(table: &[f32; LANES], at: __m512i) -> __m512 = _mm512_permutexvar_ps(at, Self::load_f(table));
             add(a: __m512i, b: __m512i) -> __m512i = _mm512_add_epi32(a, b);
             sub(a: __m512i, b: __m512i) -> __m512i = _mm512_sub_epi32(a, b);
             mul(a: __m512i, b: __m512i) -> __m512i = _mm512_mullo_epi32(a, b);
@@ -540,3 +560,6 @@ pub(crate) fn prefetch<T>(value: &T) {
     #[cfg(not(target_arch = "x86_64"))]
     let _ = value;
 }
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests;

@@ -45,22 +45,28 @@ pub(crate) struct Screen {
     pub(crate) scale_y: f32,
     /// 1 where nearness is depth, -1 where it is minus depth.
     pub(crate) sign: f32,
+    /// Whether the view shows the world mirrored.
+    pub(crate) mirrors: bool,
 }
 
 impl Screen {
     pub(crate) fn new(view: &View) -> Self {
         let viewport = view.viewport();
         let half = (SUBPIXELS / 2) as f32;
+        let sign = match view.depth() {
+            DepthDirection::Reversed => 1.0,
+            DepthDirection::Standard => -1.0,
+        };
         Self {
             width: viewport.width as i32,
             height: viewport.height as i32,
             // At most 2^21: exact.
             scale_x: viewport.width as f32 * half,
             scale_y: -(viewport.height as f32 * half),
-            sign: match view.depth() {
-                DepthDirection::Reversed => 1.0,
-                DepthDirection::Standard => -1.0,
-            },
+            sign,
+            // Right, up and toward the eye are right-handed in the world; on the screen too, if
+            // nearness counts for the third.
+            mirrors: view.clip_from_world().determinant() * f64::from(sign) < 0.0,
         }
     }
 
@@ -136,35 +142,55 @@ impl Projected {
         self.beyond[0] | self.beyond[1] | self.beyond[2]
     }
 
-    /// Takes the image of some positions, an axis after the other: what [`clip_position`] and
-    /// [`Screen::project`] make of each, operation by operation.
+    /// Takes the image of some positions, an axis after the other.
     #[inline(always)]
     pub(crate) fn transform<I: Isa>(&mut self, screen: &Screen, m: &Mat4, positions: [&[[f32; LANES]]; 3]) {
-        let [cx, cy, cz, cw] = [m.x_axis, m.y_axis, m.z_axis, m.w_axis];
         self.beyond = [0; 3];
-        let half_width = I::splat(screen.width * (SUBPIXELS / 2));
-        let half_height = I::splat(screen.height * (SUBPIXELS / 2));
-        let zero = I::splat_f(0.0);
         let (xs, _) = self.x.as_chunks_mut::<LANES>();
         let (ys, _) = self.y.as_chunks_mut::<LANES>();
         let (ns, _) = self.nearness.as_chunks_mut::<LANES>();
         for i in 0..positions[0].len().min(xs.len()) {
-            let p = [I::load_f(&positions[0][i]), I::load_f(&positions[1][i]), I::load_f(&positions[2][i])];
-            let x = affine::<I>([cx.x, cy.x, cz.x, cw.x], p);
-            let y = affine::<I>([cx.y, cy.y, cz.y, cw.y], p);
-            let z = affine::<I>([cx.z, cy.z, cz.z, cw.z], p);
-            let w = affine::<I>([cx.w, cy.w, cz.w, cw.w], p);
-            let inverse = I::div_f(I::splat_f(1.0), w);
-            let sx = I::mul_f(I::mul_f(x, inverse), I::splat_f(screen.scale_x));
-            let sy = I::mul_f(I::mul_f(y, inverse), I::splat_f(screen.scale_y));
-            let guarded = in_guard_band::<I>(sx) & in_guard_band::<I>(sy);
-            let good = [I::ge_f(I::sub_f(w, z), zero), I::ge_f(z, zero), guarded];
+            let image = Image::<I>::new(screen, m, [&positions[0][i], &positions[1][i], &positions[2][i]]);
             for k in 0..3 {
-                self.beyond[k] |= u64::from(ALL & !good[k]) << (i * LANES);
+                self.beyond[k] |= u64::from(image.beyond[k]) << (i * LANES);
             }
-            xs[i] = I::store(I::add(snap_lanes::<I>(sx), half_width));
-            ys[i] = I::store(I::add(snap_lanes::<I>(sy), half_height));
-            ns[i] = I::store_f(I::mul_f(I::splat_f(screen.sign), I::div_f(z, w)));
+            xs[i] = I::store(image.x);
+            ys[i] = I::store(image.y);
+            ns[i] = I::store_f(image.nearness);
+        }
+    }
+}
+
+/// Sixteen vertices on the screen.
+pub(crate) struct Image<I: Isa> {
+    pub(crate) x: I::I,
+    pub(crate) y: I::I,
+    pub(crate) nearness: I::F,
+    /// See [`Projected::beyond`].
+    pub(crate) beyond: [Mask; 3],
+}
+
+impl<I: Isa> Image<I> {
+    /// What [`clip_position`] and [`Screen::project`] make of each, operation by operation.
+    #[inline(always)]
+    pub(crate) fn new(screen: &Screen, m: &Mat4, positions: [&[f32; LANES]; 3]) -> Self {
+        let [cx, cy, cz, cw] = [m.x_axis, m.y_axis, m.z_axis, m.w_axis];
+        let p = [I::load_f(positions[0]), I::load_f(positions[1]), I::load_f(positions[2])];
+        let x = affine::<I>([cx.x, cy.x, cz.x, cw.x], p);
+        let y = affine::<I>([cx.y, cy.y, cz.y, cw.y], p);
+        let z = affine::<I>([cx.z, cy.z, cz.z, cw.z], p);
+        let w = affine::<I>([cx.w, cy.w, cz.w, cw.w], p);
+        let inverse = I::div_f(I::splat_f(1.0), w);
+        let sx = I::mul_f(I::mul_f(x, inverse), I::splat_f(screen.scale_x));
+        let sy = I::mul_f(I::mul_f(y, inverse), I::splat_f(screen.scale_y));
+        let zero = I::splat_f(0.0);
+        let guarded = in_guard_band::<I>(sx) & in_guard_band::<I>(sy);
+        let before = ALL & !I::ge_f(I::sub_f(w, z), zero);
+        Self {
+            x: I::add(snap_lanes::<I>(sx), I::splat(screen.width * (SUBPIXELS / 2))),
+            y: I::add(snap_lanes::<I>(sy), I::splat(screen.height * (SUBPIXELS / 2))),
+            nearness: I::mul_f(I::splat_f(screen.sign), I::div_f(z, w)),
+            beyond: [before, ALL & !I::ge_f(z, zero), ALL & !guarded],
         }
     }
 }

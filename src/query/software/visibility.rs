@@ -2,6 +2,8 @@
 //! each pixel. It rasterises the same triangles again; since the same triangle yields the same
 //! bits, a sample is in sight exactly if its nearness is not below the stored one.
 
+use rayon::prelude::*;
+
 use super::SoftwareQueries;
 use super::isa::{Isa, LANES, Mask};
 use super::layout::{BLOCK_BITS, BLOCK_PIXELS, Block, within};
@@ -73,11 +75,11 @@ impl SoftwareQueries {
             (VisibilityImage::NOTHING, VisibilityImage::NOTHING),
         );
         image.seen.clear();
-        image.seen.resize(words * (self.depth.rows().count() + 1), 0);
+        image.seen.resize(words * (self.depth.rows().len() + 1), 0);
         let (all, by_band) = image.seen.split_at_mut(words);
-        let frame = opaque.blocks.chunks(many).zip(opaque.farthest.chunks(many));
-        let marks = image.owners.chunks_mut(many * BLOCK_PIXELS).zip(by_band.chunks_mut(words));
-        let bands = frame.zip(marks).zip(self.depth.blocks().chunks(many)).zip(self.depth.rows());
+        let frame = opaque.blocks.par_chunks(many).zip(opaque.farthest.par_chunks(many));
+        let marks = image.owners.par_chunks_mut(many * BLOCK_PIXELS).zip(by_band.par_chunks_mut(words));
+        let bands = frame.zip(marks).zip(self.depth.blocks().par_chunks(many)).zip(self.depth.rows());
         let sinks = bands.map(|((((opaque, farthest), (owners, seen)), depth), rows)| VisibilitySink {
             opaque,
             farthest,

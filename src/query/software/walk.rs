@@ -13,7 +13,7 @@ pub(crate) struct Stored {
     step_y: [[i32; LANES]; 3],
     limit: [[i32; LANES]; 3],
     /// See [`Shading::stored`].
-    shading: [[f32; LANES]; 6],
+    shading: [[f32; LANES]; 5],
     rise: [f32; LANES],
     first: [[i32; LANES]; 2],
     last: [[i32; LANES]; 2],
