@@ -62,6 +62,8 @@
 //! | statistically optimised queries | `policy/statistical.rs` | Kovalčík and Sochor 2005 |
 //! | CHC | `policy/chc.rs`, `policy/coherence.rs` | Bittner et al. 2004 |
 //! | CHC++: queues, multiqueries, tight volumes | `policy/chc_plus_plus/` | Mattausch et al. 2008 |
+//! | NOHC: cost against benefit, node by node | `policy/nohc.rs`, `policy/odds.rs` | Guthe et al. 2006 |
+//! | a gate before any policy: never slower than the frustum | `policy/gated/` | ours, after Guthe et al. 2006 |
 //! | hierarchy updating, visibility propagation | `policy/hierarchy/` | Bittner and Havran 2001 |
 //! | stop-and-wait, OPT, REF | `policy/stop_and_wait.rs`, `policy/recorded.rs` | Bittner et al. 2004, Mattausch et al. 2008, Lee et al. 2021 |
 //! | conservative box proxy | `geom/proxy.rs` | its proof is in the module |

@@ -15,7 +15,9 @@ mod frustum;
 mod gated;
 mod hierarchy;
 mod history;
+mod nohc;
 mod none;
+mod odds;
 mod order;
 mod recorded;
 mod skip;
@@ -31,6 +33,7 @@ pub use frustum::FrustumOnly;
 pub use gated::Gated;
 pub use hierarchy::{Coherence, Hierarchy};
 pub use history::{History, NodeState};
+pub use nohc::Nohc;
 pub use none::DrawAll;
 pub use order::ScreenTiles;
 pub use recorded::{Recorded, Recording};
@@ -230,6 +233,7 @@ pub const NAMES: &[&str] = &[
     "dual-query",
     "chc",
     "chc++",
+    "nohc",
     "stop-and-wait",
     "hierarchy-a",
     "hierarchy-b",
@@ -250,6 +254,7 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "dual-query" => Box::new(DualQuery::default()),
         "chc" => Box::new(Chc::default()),
         "chc++" => Box::new(ChcPlusPlus::default()),
+        "nohc" => Box::new(Nohc::default()),
         "statistical" => Box::new(Statistical::default()),
         "stop-and-wait" => Box::new(StopAndWait::default()),
         "hierarchy-a" => Box::new(Hierarchy::new(Coherence::Classical)),
