@@ -62,6 +62,8 @@
 //! | statistically optimised queries | `policy/statistical.rs` | Kovalčík and Sochor 2005 |
 //! | CHC | `policy/chc.rs`, `policy/coherence.rs` | Bittner et al. 2004 |
 //! | CHC++: queues, multiqueries, tight volumes | `policy/chc_plus_plus/` | Mattausch et al. 2008 |
+//! | NOHC: cost against benefit, node by node | `policy/nohc.rs`, `policy/odds.rs` | Guthe et al. 2006 |
+//! | a gate before any policy: never slower than the frustum | `policy/gated/` | ours, after Guthe et al. 2006 |
 //! | hierarchy updating, visibility propagation | `policy/hierarchy/` | Bittner and Havran 2001 |
 //! | raster occlusion culling in two phases: ROC, HROC, hybrid | `policy/two_phase.rs`, `policy/roc.rs`, `policy/hroc/`, `policy/hybrid/`, `query/software/sweep/` | Lee et al. 2021 |
 //! | Hi-Z map | `policy/hi_z.rs`, `query/software/sweep/hi_z_build.rs`, `hi_z_test.rs` | Rákos 2010 |

@@ -120,7 +120,8 @@ fn scatter(model: &mut Model, fallback: &tercet::scene::mesh::Mesh) {
 /// Whole pictures: what is not drawn leaves no trace, down to the bits of the depth buffer.
 #[test]
 fn frames_equal_those_without_culling() {
-    let asking = ["dual-query", "statistical", "chc", "chc++", "stop-and-wait", "hierarchy-b", "hierarchy-d"];
+    let asking =
+        ["dual-query", "statistical", "chc", "chc++", "nohc", "stop-and-wait", "hierarchy-b", "hierarchy-d"];
     for name in asking.into_iter().chain(["roc", "hroc", "hi-z", "hybrid"]) {
         for seed in 0..4 {
             let mut stage = Stage::new(worlds::random(seed, 120), seed, Viewport::new(301, 203), false);
@@ -156,7 +157,7 @@ fn answers_that_go_astray_lose_nothing() {
 /// Behind a gate that opens and shuts, with answers that come and some that do not.
 #[test]
 fn behind_a_gate_nothing_is_lost() {
-    for name in ["dual-query", "chc", "chc++", "hierarchy-c"] {
+    for name in ["dual-query", "chc", "chc++", "nohc", "hierarchy-c"] {
         let gated = Arc::new(AtomicU32::new(0));
         let outcomes = (0..12u64).into_par_iter().map(|seed| {
             let mut stage = Stage::new(worlds::random(seed, 240), seed, SCREEN, true);

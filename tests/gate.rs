@@ -104,7 +104,7 @@ fn gated(name: &str) -> Gated<Box<dyn Policy>> {
     Gated::new(policy::by_name(name).expect("a policy of that name"))
 }
 
-const POLICIES: [&str; 4] = ["dual-query", "chc", "chc++", "statistical"];
+const POLICIES: [&str; 5] = ["dual-query", "chc", "chc++", "nohc", "statistical"];
 
 #[test]
 fn where_everything_is_visible_the_gate_costs_less_than_three_per_cent() {

@@ -48,6 +48,7 @@ const PROGRAM: Program = Program {
     frames: "60",
     full_detail: false,
     gate: false,
+    policies: &[],
     refused: &[("backend", "--backend has no meaning here: all lanes run on the software backend")],
 };
 

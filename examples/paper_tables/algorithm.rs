@@ -19,9 +19,10 @@ pub struct Algorithm {
 }
 
 impl Algorithm {
-    /// One that has seen nothing yet.
+    /// One that has seen nothing yet. Its own dials come after those of the command line.
     pub fn lane(&self, flags: &Flags) -> anyhow::Result<Lane> {
         let mut policy = policy::by_name(self.policy)?;
+        flags.turn(&mut *policy)?;
         for (key, value) in self.dials {
             policy.set(key, value)?;
         }

@@ -65,6 +65,7 @@ const PROGRAM: Program = Program {
     frames: "120",
     full_detail: true,
     gate: false,
+    policies: &["hierarchy-a", "hierarchy-b", "hierarchy-c", "hierarchy-d", "chc", "chc++", "nohc"],
     refused: &[
         ("backend", "--backend has no meaning here: all lanes run on the software backend"),
         ("policy", "--policy has no meaning here: the table says which algorithms run"),

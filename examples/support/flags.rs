@@ -85,9 +85,17 @@ pub struct Flags {
     #[arg(skip)]
     pub has_scale: bool,
 
+    /// Whether the command line names a number of objects.
+    #[arg(skip)]
+    pub has_objects: bool,
+
     /// Whether the policy is behind a gate.
     #[arg(skip)]
     pub gate: bool,
+
+    /// Other policies whose dials are taken.
+    #[arg(skip)]
+    pub policies: &'static [&'static str],
 }
 
 /// An example without flags of its own.
@@ -126,6 +134,8 @@ impl Flags {
         flags.example = program.name;
         flags.full_detail |= program.full_detail;
         flags.gate = program.gate;
+        flags.policies = program.policies;
+        flags.has_objects = matches.value_source("objects") == Some(ValueSource::CommandLine);
         flags.has_scale = matches.value_source("scale") == Some(ValueSource::CommandLine);
         if let Err(error) = program.check(&matches).and_then(|()| flags.check()) {
             command.clone().error(ErrorKind::InvalidValue, error).exit();
@@ -136,11 +146,45 @@ impl Flags {
     /// The policy, its dials set; behind a gate in a demo.
     pub fn policy(&self) -> anyhow::Result<Box<dyn Policy>> {
         let mut policy = by_name(&self.policy, self.gate)?;
+        self.turn(&mut *policy)?;
+        Ok(policy)
+    }
+
+    /// Turns the dials that a policy has.
+    pub fn turn(&self, policy: &mut dyn Policy) -> anyhow::Result<()> {
         let known = policy.dials();
         for (key, value) in self.dials.iter().filter(|(key, _)| has(&known, key)) {
             policy.set(key, value)?;
         }
-        Ok(policy)
+        Ok(())
+    }
+
+    /// Refuses what has no meaning for a table of these policies, in worlds of their own.
+    pub fn check_table(&self, policies: &[&str]) -> anyhow::Result<()> {
+        if self.has_objects {
+            bail!("--objects has no meaning for this table: --scale says how large its worlds are");
+        }
+        self.check_dials(policies)
+    }
+
+    /// Refuses dials that nobody has: none of these policies, nor the tree, nor the example.
+    pub fn check_dials(&self, policies: &[&str]) -> anyhow::Result<()> {
+        let mut known = Vec::new();
+        for name in policies {
+            let mut policy = by_name(name, self.gate)?;
+            self.turn(&mut *policy)?;
+            known.extend(policy.dials());
+        }
+        for (key, value) in &self.dials {
+            if !has(&known, key) && !is_tree_dial(key) && !is_own_dial(key) {
+                bail!(
+                    "--set {key}={value}: neither {}, nor the tree, nor the example has a dial of that name; \
+                     --help lists them",
+                    policies.join(", nor ")
+                );
+            }
+        }
+        Ok(())
     }
 
     /// The tree's dials.
@@ -201,16 +245,8 @@ impl Flags {
 
     /// Refuses what cannot be done, before a world is built.
     fn check(&self) -> anyhow::Result<()> {
-        let policy = self.policy()?;
-        for (key, value) in &self.dials {
-            if !has(&policy.dials(), key) && !is_tree_dial(key) && !is_own_dial(key) {
-                bail!(
-                    "--set {key}={value}: neither {}, nor the tree, nor the example has a dial of that name; \
-                     --help lists them",
-                    self.policy
-                );
-            }
-        }
+        let policies = [&[self.policy.as_str()], self.policies].concat();
+        self.check_dials(&policies)?;
         self.tree()?;
         self.detail()?;
         self.flight_end()?;
@@ -275,9 +311,9 @@ fn catalogue(program: &Program) -> String {
     }
     let names = if program.takes("policy") {
         let _ = writeln!(text, "\nPolicies: {}", policy::NAMES.join(", "));
-        policy::NAMES
+        policy::NAMES.to_vec()
     } else {
-        &[DEFAULT_POLICY]
+        [&[DEFAULT_POLICY], program.policies].concat()
     };
     for name in names {
         let dials = by_name(name, false).map(|policy| policy.dials()).unwrap_or_default();

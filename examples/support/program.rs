@@ -20,6 +20,8 @@ pub struct Program {
     /// Whether the policy is behind a gate ([`Gated`](tercet::policy::Gated)): a demo shall never be
     /// slower than it need be, a comparison compares policies as they are.
     pub gate: bool,
+    /// Policies beside `--policy` whose dials `--set` reaches.
+    pub policies: &'static [&'static str],
     /// Shared flags without a meaning here, and what is said when they are given.
     pub refused: &'static [(&'static str, &'static str)],
 }
@@ -35,7 +37,16 @@ impl Program {
             ("--headless --set gate=off", "ask in every frame, even where it does not pay"),
             ("--set preset=paper", "the tree with the rule and the constants of the 2005 paper"),
         ];
-        Self { name, about, examples: EXAMPLES, frames: "240", full_detail: false, gate: true, refused: &[] }
+        Self {
+            name,
+            about,
+            examples: EXAMPLES,
+            frames: "240",
+            full_detail: false,
+            gate: true,
+            policies: &[],
+            refused: &[],
+        }
     }
 
     /// Whether a shared flag has a meaning here.

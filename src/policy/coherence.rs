@@ -9,6 +9,7 @@
 use std::collections::VecDeque;
 
 use super::front::{Front, FrontQueue};
+use super::odds::Kind;
 use super::{Answer, Context, Extent, Fate, History};
 use crate::Counter;
 use crate::geom::PlaneMask;
@@ -102,6 +103,32 @@ impl Coherence {
         Look::TakeAsVisible
     }
 
+    /// What is remembered of a node that is to be asked about and whether it is a leaf; and how many frames
+    /// ago it was last asked about, 1 if it never was.
+    pub(super) fn memory(&self, cx: &Context<'_>, node: NodeId) -> ((Kind, bool), u32) {
+        let state = self.history.get(node);
+        let kind = match (state.frame == cx.frame.wrapping_sub(1), state.visible) {
+            _ if state.frame == 0 => Kind::New,
+            (true, true) => Kind::Visible,
+            (true, false) => Kind::Hidden,
+            (false, true) => Kind::OnceVisible,
+            (false, false) => Kind::OnceHidden,
+        };
+        let is_known = state.asked_at != 0 && matches!(kind, Kind::Visible | Kind::Hidden);
+        let ago = if is_known { cx.frame.wrapping_sub(state.asked_at) } else { 1 };
+        ((kind, self.is_leaf(cx, node)), ago)
+    }
+
+    /// Answers that found a node visible since one that found it hidden.
+    pub(super) fn streak(&self, node: NodeId) -> u32 {
+        self.history.get(node).streak
+    }
+
+    /// For so many frames after this one, a leaf that was not asked about stays unasked.
+    pub(super) fn assume_visible(&mut self, cx: &Context<'_>, leaf: NodeId, term: u32) {
+        self.history.entry(leaf).skip_until = cx.frame.saturating_add(term);
+    }
+
     /// Will ask a question.
     pub(super) fn ask(&mut self, question: usize) {
         self.out.push_back(Step::Ask(question));
@@ -175,7 +202,7 @@ impl Coherence {
     }
 
     /// Whether a node is asked about and drawn as one.
-    fn is_leaf(&self, cx: &Context<'_>, node: NodeId) -> bool {
+    pub(super) fn is_leaf(&self, cx: &Context<'_>, node: NodeId) -> bool {
         cx.tree.is_leaf(node) || self.is_virtual_leaf(cx, node)
     }
 

@@ -19,7 +19,9 @@ mod hierarchy;
 mod history;
 mod hroc;
 mod hybrid;
+mod nohc;
 mod none;
+mod odds;
 mod order;
 mod plan;
 mod recorded;
@@ -42,6 +44,7 @@ pub use hierarchy::{Coherence, Hierarchy};
 pub use history::{History, NodeState};
 pub use hroc::{Groups, Hroc};
 pub use hybrid::{Hybrid, MoversApart};
+pub use nohc::Nohc;
 pub use none::DrawAll;
 pub use order::ScreenTiles;
 pub use plan::{First, Plan, Targets};
@@ -287,6 +290,7 @@ pub const NAMES: &[&str] = &[
     "dual-query",
     "chc",
     "chc++",
+    "nohc",
     "stop-and-wait",
     "hierarchy-a",
     "hierarchy-b",
@@ -312,6 +316,7 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "dual-query" => Box::new(DualQuery::default()),
         "chc" => Box::new(Chc::default()),
         "chc++" => Box::new(ChcPlusPlus::default()),
+        "nohc" => Box::new(Nohc::default()),
         "statistical" => Box::new(Statistical::default()),
         "stop-and-wait" => Box::new(StopAndWait::default()),
         "hierarchy-a" => Box::new(Hierarchy::new(Coherence::Classical)),

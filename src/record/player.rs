@@ -10,7 +10,7 @@ use crate::policy::{self, Gated, Policy};
 use crate::query::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
 use crate::scene::{Scene, SceneConfig};
 use crate::tree::TreeConfig;
-use crate::{Culler, Error, FrameStats};
+use crate::{Culler, Dial, Error, FrameStats};
 
 /// The dial of a policy that is behind a gate.
 const GATE: &str = "gate";
@@ -50,7 +50,8 @@ impl<R: Read> Player<R> {
         let mut tree = TreeConfig::default();
         header.tree.iter().try_for_each(|(key, value)| tree.set(key, value)).map_err(unknown)?;
         let mut policy = policy::by_name(&header.policy).map_err(unknown)?;
-        if header.dials.iter().any(|(key, _)| key == GATE) {
+        let has = |dials: Vec<Dial>| dials.iter().any(|dial| dial.key == GATE);
+        if header.dials.iter().any(|(key, _)| key == GATE) && !has(policy.dials()) {
             policy = Box::new(Gated::new(policy));
         }
         header.dials.iter().try_for_each(|(key, value)| policy.set(key, value)).map_err(unknown)?;

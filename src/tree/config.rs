@@ -146,6 +146,21 @@ impl TreeConfig {
         }
     }
 
+    /// The binary tree of Bittner and Havran 2001: cells halved along their longest side, straddlers in
+    /// inner nodes, questions about cells, which fill space. It is left as it is built.
+    pub const fn binary() -> Self {
+        Self {
+            straddlers: Straddlers::StayInParent,
+            tight_boxes: TightBoxes::Never,
+            plane: SplitPlane::Middle,
+            axis: SplitAxis::Longest,
+            leaf_size: LeafSize::Fixed,
+            bulk_leaf: 1,
+            unasked_leaf: 1,
+            ..Self::stable()
+        }
+    }
+
     /// Sets one dial by name, as `--set` does; `preset=paper` or `preset=stable` sets all.
     ///
     /// # Errors

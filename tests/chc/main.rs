@@ -2,7 +2,9 @@
 //! rule and each trap of the papers asks for.
 
 mod coherent;
+mod floor;
 mod multiqueries;
+mod nohc;
 mod plus_plus;
 mod script;
 mod terms;

@@ -9,7 +9,7 @@ use crate::script::Script;
 fn multiqueries() -> ChcPlusPlus {
     let mut policy = ChcPlusPlus::default();
     (policy.n_av, policy.randomised, policy.tight) = (1, false, false);
-    policy.p_keep = KeepRule::Analytic;
+    (policy.p_keep, policy.guess) = (KeepRule::Analytic, false);
     policy
 }
 

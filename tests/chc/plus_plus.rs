@@ -12,6 +12,7 @@ use crate::script::{Arrival, Script, cube, fine};
 fn batching() -> ChcPlusPlus {
     let mut policy = ChcPlusPlus::default();
     (policy.n_av, policy.randomised, policy.tight, policy.multiqueries) = (1, false, false, false);
+    (policy.regroup, policy.guess) = (false, false);
     policy
 }
 

@@ -11,8 +11,6 @@ use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::{Straddlers, TightBoxes, TreeConfig};
 use tercet::worlds::{self, power_plant};
 
-use crate::script::binary;
-
 const SCALE: f32 = 0.1;
 const FRAMES: u32 = 60;
 
@@ -67,15 +65,15 @@ fn savings(tree: &TreeConfig, label: &str) -> [f64; 3] {
 
 #[test]
 fn questions_are_saved_on_the_binary_tree() {
-    let [b, c, d] = savings(&binary(), "binary, cells");
+    let [b, c, d] = savings(&TreeConfig::binary(), "binary, cells");
     assert!(b >= 0.40, "B saves {b:.3}: nearly half of a binary tree's visited nodes are opened");
     assert!(c >= b - 0.01 && d >= 0.60, "C saves {c:.3}, D saves {d:.3}");
-    savings(&TreeConfig { tight_boxes: TightBoxes::Always, ..binary() }, "binary, tight boxes");
+    savings(&TreeConfig { tight_boxes: TightBoxes::Always, ..TreeConfig::binary() }, "binary, tight boxes");
 }
 
 #[test]
 fn questions_are_saved_on_the_ternary_tree() {
-    let ternary = TreeConfig { straddlers: Straddlers::Leaf, ..binary() };
+    let ternary = TreeConfig { straddlers: Straddlers::Leaf, ..TreeConfig::binary() };
     let [b, _, d] = savings(&ternary, "ternary, cells");
     // At most a third of the nodes visited in a ternary tree are opened ones.
     assert!((0.2..0.5).contains(&b) && d > b, "B saves {b:.3}, D saves {d:.3}");
@@ -85,7 +83,7 @@ fn questions_are_saved_on_the_ternary_tree() {
 /// The same plots as the paper's, in figures: against the walking speed, and against `p_skip`.
 #[test]
 fn faster_walks_and_more_questions_save_less() {
-    let tree = binary();
+    let tree = TreeConfig::binary();
     let saved = |name, dials: &[(&str, &str)], speed| {
         let all = walk(name, dials, &tree, speed);
         let saved = 1.0 - f64::from(all.asked) / f64::from(walk("hierarchy-a", &[], &tree, speed).asked);

@@ -5,23 +5,8 @@ use tercet::geom::{Aabb, Frustum, Question, View, Viewport};
 use tercet::policy::{Action, Context, Extent, Hierarchy, Policy};
 use tercet::query::Answer;
 use tercet::scene::{ObjectId, Scene, SceneConfig, Traits};
-use tercet::tree::{LeafSize, NodeId, SplitAxis, SplitPlane, Straddlers, TightBoxes, Tree, TreeConfig};
+use tercet::tree::{NodeId, Tree, TreeConfig};
 use tercet::{Costs, Tradeoff};
-
-/// The published binary tree: cells halved along their longest side, straddlers in inner nodes,
-/// questions about cells.
-pub(crate) fn binary() -> TreeConfig {
-    TreeConfig {
-        straddlers: Straddlers::StayInParent,
-        tight_boxes: TightBoxes::Never,
-        plane: SplitPlane::Middle,
-        axis: SplitAxis::Longest,
-        leaf_size: LeafSize::Fixed,
-        bulk_leaf: 1,
-        unasked_leaf: 1,
-        ..TreeConfig::stable()
-    }
-}
 
 /// A row of boxes along x, seen from its lower end: each hides all that is behind it.
 ///

@@ -4,7 +4,7 @@ use glam::Vec3;
 use tercet::policy::{Coherence, Hierarchy, Policy};
 use tercet::tree::{Straddlers, TightBoxes, TreeConfig};
 
-use crate::script::{Row, binary};
+use crate::script::Row;
 
 /// Two, one across the middle, and two more.
 const STRADDLING: [f32; 5] = [0.0, 0.5, 15.25, 30.0, 30.5];
@@ -32,7 +32,7 @@ fn without_propagation(coherence: Coherence) -> Hierarchy {
 
 #[test]
 fn a_asks_about_every_node_on_the_way_in_every_frame() {
-    let mut row = Row::new(policy(Coherence::Classical), binary());
+    let mut row = Row::new(policy(Coherence::Classical), TreeConfig::binary());
     for _ in 0..3 {
         assert_eq!(row.frame(""), ALL);
         assert_eq!(row.frame("H=h"), "root L LL all:LL LH all:LH H");
@@ -42,7 +42,7 @@ fn a_asks_about_every_node_on_the_way_in_every_frame() {
 
 #[test]
 fn b_opens_again_what_was_opened_and_asks_only_where_the_traversal_ended() {
-    let mut row = Row::new(policy(Coherence::Updating), binary());
+    let mut row = Row::new(policy(Coherence::Updating), TreeConfig::binary());
     assert_eq!(row.frame("LH=h"), "root L LL all:LL LH H HL all:HL HH all:HH");
     // Opened nodes with mixed children are stamped on every visit: none is ever asked about again.
     for _ in 0..4 {
@@ -53,7 +53,7 @@ fn b_opens_again_what_was_opened_and_asks_only_where_the_traversal_ended() {
 
 #[test]
 fn what_all_children_came_to_is_pulled_up() {
-    let mut row = Row::new(policy(Coherence::Updating), binary());
+    let mut row = Row::new(policy(Coherence::Updating), TreeConfig::binary());
     assert_eq!(row.frame("HL=h HH=h"), "root L LL all:LL LH all:LH H HL HH");
     assert_eq!(row.counter("pull_ups"), 1);
     assert_eq!(row.frame("H=h"), "LL all:LL LH all:LH H", "one question for the two");
@@ -66,14 +66,14 @@ fn what_all_children_came_to_is_pulled_up() {
 #[test]
 fn an_inner_node_that_is_all_visible_is_opened_unless_it_may_be_drawn_as_a_whole() {
     let all = "root=v L=v H=v LL=v LH=v HL=v HH=v";
-    let mut row = Row::new(policy(Coherence::Updating), binary());
+    let mut row = Row::new(policy(Coherence::Updating), TreeConfig::binary());
     assert_eq!(row.frame(all), ALL);
     assert_eq!(row.frame(all), "LL all:LL LH all:LH HL all:HL HH all:HH");
-    let mut row = Row::new(drawing_wholes(Coherence::Updating), binary());
+    let mut row = Row::new(drawing_wholes(Coherence::Updating), TreeConfig::binary());
     assert_eq!(row.frame("LL=v LH=v"), ALL);
     assert_eq!(row.frame("L=v"), "L all:L HL all:HL HH all:HH", "pulled up, and one question for the two");
     assert_eq!(row.frame("L=p"), "L LL all:LL LH all:LH HL all:HL HH all:HH");
-    let mut row = Row::new(drawing_wholes(Coherence::Classical), binary());
+    let mut row = Row::new(drawing_wholes(Coherence::Classical), TreeConfig::binary());
     assert_eq!(row.frame("root=v"), "root all:root");
 }
 
@@ -81,7 +81,7 @@ fn an_inner_node_that_is_all_visible_is_opened_unless_it_may_be_drawn_as_a_whole
 /// node, whatever its children are; opened unasked, it may be.
 #[test]
 fn straddlers_in_an_inner_node_count_as_one_more_child() {
-    let mut row = Row::of(policy(Coherence::Updating), binary(), &STRADDLING.map(Row::at));
+    let mut row = Row::of(policy(Coherence::Updating), TreeConfig::binary(), &STRADDLING.map(Row::at));
     assert_eq!(row.frame("L=h H=h"), "root own:root L H");
     assert_eq!(row.frame("L=h H=h"), "own:root L H");
     assert_eq!(row.frame("root=h"), "root");
@@ -89,13 +89,13 @@ fn straddlers_in_an_inner_node_count_as_one_more_child() {
 
 #[test]
 fn lost_answers_are_visible_and_prove_nothing() {
-    let mut row = Row::new(policy(Coherence::Propagating), binary());
+    let mut row = Row::new(policy(Coherence::Propagating), TreeConfig::binary());
     assert_eq!(row.frame("root=u L=u LL=u LH=u H=u HL=u HH=u"), ALL);
 }
 
 #[test]
 fn what_was_out_of_view_is_asked_about_anew() {
-    let mut row = Row::new(policy(Coherence::Updating), binary());
+    let mut row = Row::new(policy(Coherence::Updating), TreeConfig::binary());
     assert_eq!(row.frame(""), ALL);
     row.target = Vec3::X * -100.0;
     assert_eq!(row.frame(""), "");
@@ -105,7 +105,7 @@ fn what_was_out_of_view_is_asked_about_anew() {
 
 #[test]
 fn a_hidden_cell_hides_what_is_behind_its_faces() {
-    let mut row = Row::new(policy(Coherence::Propagating), binary());
+    let mut row = Row::new(policy(Coherence::Propagating), TreeConfig::binary());
     // LL hides LH, and LH hides H.
     assert_eq!(row.frame("LL=h"), "root L LL");
     assert_eq!(row.counter("propagated_nodes"), 2);
@@ -117,7 +117,7 @@ fn a_hidden_cell_hides_what_is_behind_its_faces() {
 /// The link of H leads to LH, below L at which the traversal ended.
 #[test]
 fn links_lead_up_to_where_the_traversal_ended() {
-    let mut row = Row::new(policy(Coherence::Propagating), binary());
+    let mut row = Row::new(policy(Coherence::Propagating), TreeConfig::binary());
     assert_eq!(row.frame("L=h"), "root L", "L, which is larger, proves H hidden");
     assert_eq!(row.counter("propagated_nodes"), 1);
 }
@@ -125,7 +125,7 @@ fn links_lead_up_to_where_the_traversal_ended() {
 /// Seen from above, HL has two faces to the viewer, and nothing is known beyond the root's.
 #[test]
 fn nothing_is_known_beyond_the_root() {
-    let mut row = Row::new(policy(Coherence::Propagating), binary());
+    let mut row = Row::new(policy(Coherence::Propagating), TreeConfig::binary());
     row.eye.y = 15.0;
     assert_eq!(row.frame("LL=h LH=h HL=h HH=h"), "root L LL LH H HL HH");
     assert_eq!(row.counter("propagated_nodes"), 0);
@@ -133,7 +133,7 @@ fn nothing_is_known_beyond_the_root() {
 
 #[test]
 fn a_tight_box_says_nothing_of_its_cell() {
-    let tight = TreeConfig { tight_boxes: TightBoxes::Always, ..binary() };
+    let tight = TreeConfig { tight_boxes: TightBoxes::Always, ..TreeConfig::binary() };
     let mut row = Row::new(policy(Coherence::Propagating), tight);
     assert_eq!(row.frame("LL=h LH=h H=h"), "root L LL LH H");
     assert_eq!(row.counter("propagated_nodes"), 0);
@@ -142,7 +142,7 @@ fn a_tight_box_says_nothing_of_its_cell() {
 /// The ternary tree's third child holds the box at 15: it neither bears witness nor is it judged.
 #[test]
 fn a_straddle_child_is_no_neighbour() {
-    let ternary = TreeConfig { straddlers: Straddlers::Leaf, ..binary() };
+    let ternary = TreeConfig { straddlers: Straddlers::Leaf, ..TreeConfig::binary() };
     let mut row = Row::of(policy(Coherence::Propagating), ternary.clone(), &STRADDLING.map(Row::at));
     assert_eq!(row.frame("L=h S=h"), "root L S", "H is behind L, whatever stands between");
     assert_eq!(row.frame("root=p L=p S=h H=h"), "root L all:L S H", "S, hidden, says nothing of H");
@@ -157,7 +157,7 @@ fn a_straddle_child_is_no_neighbour() {
 
 #[test]
 fn samples_that_were_given_up_prove_nothing() {
-    let mut row = Row::new(policy(Coherence::Propagating), binary());
+    let mut row = Row::new(policy(Coherence::Propagating), TreeConfig::binary());
     row.tradeoff.visible_pixels = 5;
     assert_eq!(
         row.frame("root=v L=v LL=p LH=h H=h"),
@@ -168,7 +168,7 @@ fn samples_that_were_given_up_prove_nothing() {
 
 #[test]
 fn an_answer_of_an_earlier_frame_proves_nothing() {
-    let mut row = Row::new(policy(Coherence::Propagating), binary());
+    let mut row = Row::new(policy(Coherence::Propagating), TreeConfig::binary());
     assert_eq!(row.frame("LL=h"), "root L LL");
     // The viewer has gone to the other end: HH is now the first, and LL's old answer is no one's.
     row.eye.x = 50.0;
@@ -178,7 +178,7 @@ fn an_answer_of_an_earlier_frame_proves_nothing() {
 
 #[test]
 fn what_is_behind_visible_leaves_is_taken_as_visible() {
-    let mut row = Row::new(policy(Coherence::Propagating), binary());
+    let mut row = Row::new(policy(Coherence::Propagating), TreeConfig::binary());
     // LL was asked about and speaks for LH; LH was not, and does not speak for others.
     assert_eq!(row.frame("LL=v"), "root L LL all:LL all:LH H HL all:HL HH all:HH");
     assert_eq!(row.counter("propagated_nodes"), 1);
@@ -188,9 +188,9 @@ fn what_is_behind_visible_leaves_is_taken_as_visible() {
 
 #[test]
 fn propagation_is_tried_again_where_it_worked_and_else_by_chance() {
-    let mut row = Row::new(without_propagation(Coherence::Propagating), binary());
+    let mut row = Row::new(without_propagation(Coherence::Propagating), TreeConfig::binary());
     assert_eq!(row.frame("LL=v LH=v"), ALL, "never by chance");
-    let mut row = Row::new(policy(Coherence::Propagating), binary());
+    let mut row = Row::new(policy(Coherence::Propagating), TreeConfig::binary());
     assert_eq!(row.frame("LL=v"), "root L LL all:LL all:LH H HL all:HL HH all:HH");
     row.policy.set("p_vp", "0").expect("a dial");
     assert_eq!(row.frame("LL=v"), "LL all:LL all:LH HL all:HL HH all:HH", "it worked the last time");
@@ -198,7 +198,7 @@ fn propagation_is_tried_again_where_it_worked_and_else_by_chance() {
 
 #[test]
 fn d_does_not_ask_about_what_was_visible_and_always_about_what_was_hidden() {
-    let mut row = Row::new(without_propagation(Coherence::Conservative), binary());
+    let mut row = Row::new(without_propagation(Coherence::Conservative), TreeConfig::binary());
     assert_eq!(row.frame("LL=v HL=h"), "root L LL all:LL LH all:LH H HL HH all:HH");
     assert_eq!(row.frame("HL=h"), "all:LL all:LH all:HH HL");
     assert_eq!(row.counter("skipped_tests"), 3);
@@ -212,7 +212,7 @@ fn chance_is_the_same_for_the_same_seed_and_frame() {
     let run = |seed| {
         let mut policy = without_propagation(Coherence::Conservative);
         (policy.seed, policy.p_skip) = (seed, 0.5);
-        let mut row = Row::new(policy, binary());
+        let mut row = Row::new(policy, TreeConfig::binary());
         (0..20).map(|_| row.frame("")).collect::<Vec<_>>()
     };
     assert_eq!(run(7), run(7));
@@ -225,7 +225,7 @@ fn chance_is_the_same_for_the_same_seed_and_frame() {
 #[test]
 fn a_moved_object_is_not_hidden_by_an_old_answer() {
     for coherence in [Coherence::Updating, Coherence::Propagating, Coherence::Conservative] {
-        let mut row = Row::new(policy(coherence), binary());
+        let mut row = Row::new(policy(coherence), TreeConfig::binary());
         row.frame("HH=h");
         row.frame("HH=h");
         // The hidden box comes forward, beside the first one.
@@ -239,7 +239,7 @@ fn a_moved_object_is_not_hidden_by_an_old_answer() {
 /// The root grows, and what it was goes elsewhere: whoever is new is asked about.
 #[test]
 fn a_tree_that_grows_is_followed() {
-    let mut row = Row::new(policy(Coherence::Updating), binary());
+    let mut row = Row::new(policy(Coherence::Updating), TreeConfig::binary());
     assert_eq!(row.frame("HH=h"), "root L LL all:LL LH all:LH H HL all:HL HH");
     row.objects.push(row.scene.insert(Row::at(55.0), tercet::scene::Traits::default()));
     row.scene.update();

@@ -11,7 +11,7 @@ mod points;
 mod walks;
 
 use tercet::policy::{self, Policy};
-use tercet::tree::{LeafSize, SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig};
+use tercet::tree::{Straddlers, TreeConfig};
 
 use crate::output::Output;
 use crate::support::flags::Flags;
@@ -43,6 +43,9 @@ const TREES: [TreeKind; 2] = [
     TreeKind { name: "ternary", straddlers: Straddlers::Leaf },
 ];
 
+/// Those of all algorithms.
+pub const POLICIES: [&str; 4] = ["hierarchy-a", "hierarchy-b", "hierarchy-c", "hierarchy-d"];
+
 /// What asks.
 #[derive(Clone, Copy)]
 struct Algorithm {
@@ -54,6 +57,7 @@ struct Algorithm {
 
 /// Runs all walks and writes `bh2001.md`, a table and two figures into `--out`.
 pub fn run(flags: &Flags) -> anyhow::Result<()> {
+    flags.check_table(&POLICIES)?;
     let flags = &flags.with_default_scale(SCALE);
     let output = Output::new(flags, "bh2001", frames(flags))?;
     let mut points = Vec::new();
@@ -119,6 +123,7 @@ impl Algorithm {
     /// One that has seen nothing yet.
     fn lane(&self, flags: &Flags, tree: TreeKind) -> anyhow::Result<Lane> {
         let mut policy = policy::by_name(self.policy)?;
+        flags.turn(&mut *policy)?;
         if let Some(p_skip) = self.p_skip {
             policy.set("p_skip", &p_skip.to_string())?;
         }
@@ -131,19 +136,9 @@ impl TreeKind {
         self.straddlers == Straddlers::StayInParent
     }
 
-    /// As published: cells halved along their longest side, and questions about cells; propagation
-    /// knows nothing of tighter boxes.
+    /// As published: propagation knows nothing of tighter boxes.
     fn config(self, flags: &Flags) -> anyhow::Result<TreeConfig> {
-        flags.tree_from(TreeConfig {
-            straddlers: self.straddlers,
-            tight_boxes: TightBoxes::Never,
-            plane: SplitPlane::Middle,
-            axis: SplitAxis::Longest,
-            leaf_size: LeafSize::Fixed,
-            bulk_leaf: 1,
-            unasked_leaf: 1,
-            ..TreeConfig::stable()
-        })
+        flags.tree_from(TreeConfig { straddlers: self.straddlers, ..TreeConfig::binary() })
     }
 }
 

@@ -1,7 +1,7 @@
 //! `chcpp_frame_time.png` and `chcpp_questions.png`: two panels a scene each, on logarithmic axes.
 
 use super::Outcome;
-use super::algorithms::{ALGORITHMS, CHC, DUAL, OPT, PLUS_PLUS, VFC};
+use super::algorithms::{ALGORITHMS, CHC, DUAL, NOHC, OPT, PLUS_PLUS, VFC};
 use crate::output::Output;
 use crate::support::canvas::{self, Key, Sheet};
 use crate::support::chart::{self, Curve, log_axes, panel};
@@ -28,9 +28,9 @@ struct Panel {
     algorithms: &'static [usize],
 }
 
-const METHODS: &[usize] = &[VFC, DUAL, OPT, CHC, PLUS_PLUS];
+const METHODS: &[usize] = &[VFC, NOHC, DUAL, OPT, CHC, PLUS_PLUS];
 /// From CHC to CHC++.
-const ABLATION: &[usize] = &[1, 2, 3, 4, 5];
+const ABLATION: &[usize] = &[1, 3, 4, 5, 6, 7];
 
 const FRAME_TIME: Figure = Figure {
     title: "Frame time of CHC++, of what it is compared with, and of what it is made of",

@@ -49,14 +49,15 @@ something visible and were asked again node by node. *Wrongly culled* is the tot
 
 const NOTES: &str = "\
 - VFC is view-frustum culling; B are batches, R is randomised sampling, TB tight bounding volumes, MQ \
-multiqueries, each with all before it.
+multiqueries, each with all before it, by the published rules; G is what is ours: guesses about what comes \
+into view, and large multiqueries that fail repeated in groups.
 - Times are those of this machine, which draws and answers on the CPU, where answers come at once and \
 there is little waiting to be filled. The paper's figures come from a GPU; questions and state changes \
 compare, times much less.
 - OPT's set is found outside the clock, just before its frame and on its tree, which is then warm in the \
 caches.
 - The paper's scenes are Vienna, Pompeii and a power plant. Shader complexity (the paper draws with up to \
-40 look-ups a pixel) and NOHC are not run.
+40 look-ups a pixel) is not run.
 - *Box visible* are the objects whose own box would be found visible; *really visible* those that own a \
 pixel.
 ";

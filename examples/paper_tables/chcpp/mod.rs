@@ -16,7 +16,7 @@ use crate::output::Output;
 use crate::support::flags::Flags;
 use crate::support::lockstep::Measured;
 use crate::support::report::write_csv;
-use algorithms::{ALGORITHMS, OPT, PLUS_PLUS, VFC};
+use algorithms::{ALGORITHMS, OPT, PLUS_PLUS, POLICIES, VFC};
 use scenes::SCENES;
 
 /// How much of the city is built, unless the command line says otherwise.
@@ -32,6 +32,7 @@ pub struct Outcome {
 
 /// Runs all scenes and writes `chcpp.md`, two tables and two figures into `--out`.
 pub fn run(flags: &Flags) -> anyhow::Result<()> {
+    flags.check_table(&POLICIES)?;
     let flags = &flags.with_default_scale(SCALE);
     let frames = SCENES.len() * ALGORITHMS.len() * flags.frames as usize;
     let output = Output::new(flags, "chcpp", frames as u64)?;

@@ -35,6 +35,7 @@ pub struct Outcome {
 
 /// Runs all scenes and writes `kt2005.md`, two tables and two figures into `--out`.
 pub fn run(flags: &Flags) -> anyhow::Result<()> {
+    flags.check_dials(&[&flags.policy])?;
     let output = Output::new(flags, "kt2005", 2 * SCENES.len() as u64 * u64::from(flags.frames))?;
     let mut outcomes = Vec::new();
     for scene in SCENES {

@@ -78,7 +78,9 @@ fn of_fate(fate: Fate, is_straddle: bool) -> Option<Color> {
         (Fate::Visible { .. }, true) => Some(STRADDLE_VISIBLE),
         (Fate::Remembered { .. } | Fate::Near, false) => Some(REMEMBERED),
         (Fate::Remembered { .. } | Fate::Near, true) => Some(STRADDLE_REMEMBERED),
-        (Fate::Unknown | Fate::Unasked | Fate::Given | Fate::Swept | Fate::Outside | Fate::NotReached, _) => None,
+        (Fate::Unknown | Fate::Unasked | Fate::Given | Fate::Swept | Fate::Outside | Fate::NotReached, _) => {
+            None
+        }
     }
 }
 

@@ -67,6 +67,8 @@ const HROC: usize = 1;
 const HYBRID: usize = 2;
 /// By number: what counters call a way, which says how many frames were its.
 const KEYS: [&str; 5] = ["auto_dual_query", "auto_hroc", "auto_hybrid", "auto_chc_plus_plus", "auto_hi_z"];
+/// The dials of the gate, which are this policy's as well.
+const GATE: [&str; 2] = ["gate", "probe"];
 /// The share of the objects that move from which movers are swept apart.
 const MOVERS: f32 = 0.01;
 
@@ -218,7 +220,14 @@ impl Policy for Auto {
     }
 
     fn dials(&self) -> Vec<Dial> {
-        vec![Dial::new("race", self.race, "let other ways than dual queries show whether they are faster")]
+        let mut dials = vec![Dial::new(
+            "race",
+            self.race,
+            "let other ways than dual queries show whether they are faster",
+        )];
+        let gate = self.ways.dual_query.0.dials();
+        dials.extend(gate.into_iter().filter(|dial| GATE.contains(&dial.key)));
+        dials
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
@@ -229,6 +238,7 @@ impl Policy for Auto {
                     self.running = DUAL_QUERY;
                 }
             }
+            key if GATE.contains(&key) => self.ways.dual_query.0.set(key, value)?,
             _ => return Err(dial::unknown(key, value, &self.dials())),
         }
         Ok(())

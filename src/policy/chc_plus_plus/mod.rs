@@ -9,6 +9,8 @@
 //! | the first question about a leaf that turned visible comes after a random time | `randomised` | `sampling` |
 //! | questions are about the boxes of descendants | `tight` | `tight` |
 //! | several hidden nodes are asked about in one question | `multiqueries` | `multiquery` |
+//! | a large multiquery that fails is repeated in groups (ours) | `regroup` | `multiquery` |
+//! | inner nodes that come into view are opened, and leaves drawn, unasked if they are seldom hidden (ours) | `guess` | `mod` |
 //!
 //! With all of them off it does as CHC does, but that it asks about a visible leaf every `n_av`
 //! frames, and CHC in the frame after `n_av` (both as published). So the published ablation (CHC,
@@ -27,10 +29,21 @@
 //!   one submission on a device. The paper issues leaf by leaf whenever an answer has not arrived yet,
 //!   and leaves the last answers to the next frame. Here they are awaited: a frame's questions end
 //!   with it.
+//! - *Guesses.* After a quick turn nothing is remembered of what has come into view. The published rule
+//!   asks about every node on the way down, and most inner ones are visible. Here such a node is opened
+//!   unasked if it is hidden with a probability `p`, by the measure of those of its coverage of the
+//!   screen, so low that asking about its `c` children costs less than asking about it first: `p c < 1`.
+//!   A leaf is drawn unasked where `p` is below 0.35, and asked about one to three frames later. No answer
+//!   hides them, so nothing can be lost.
+//! - *Groups.* Nodes of a failed multiquery are asked about one by one as published; of more than four,
+//!   in about √|M| groups first. So larger sets are worth a question, and `C` is that of the two steps.
+//! - `p_keep` is measured for nodes that are alike: leaves or not, of about the same coverage of the screen,
+//!   visible before they were hidden or not; and for nodes of which nothing is known.
 //! - Nodes of a failed multiquery join the i-queue instead of being asked about at once: another
 //!   batch, not another change of state.
 //! - An inner node may be visible, and nothing below it. As published it is then asked about in every
-//!   second frame, and its children in between. With multiqueries it stays open for `n_av` frames.
+//!   second frame, and its children in between. With multiqueries it stays open for `n_av` frames;
+//!   with `regroup`, twice as long when that was in vain again, and up to eight times.
 //! - Below a leaf, tight volumes go on to the boxes of its objects; nothing need be built deeper.
 //! - A question that counts ([`Want::Dual`]) is about one box. With a threshold of visible samples,
 //!   volumes are not tight, and multiqueries ask, as ever, whether a single sample is visible; the
@@ -49,17 +62,21 @@ use std::ops::Range;
 use super::chc::IN_FLIGHT;
 use super::coherence::{Coherence, Look, Step, Terms};
 use super::front::Front;
+use super::odds::{Class, Kind, Odds};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
 use crate::geom::Question;
 use crate::query::{Wait, Want};
 use crate::tree::NodeId;
 use crate::{Counter, Error};
-use multiquery::KeepRate;
+use multiquery::{Alike, KeepRate};
 use queues::{Queues, Waiting};
 use sampling::Sampling;
 use spells::Spells;
 use tight::{Limits, TightVolume};
+
+/// Leaves that are hidden with a lesser probability are drawn unasked when they come into view.
+const SELDOM: f32 = 0.35;
 
 const KEEP_RULES: &[(&str, KeepRule)] = &[("measured", KeepRule::Measured), ("analytic", KeepRule::Analytic)];
 
@@ -78,6 +95,10 @@ pub struct ChcPlusPlus {
     pub tight: bool,
     /// Whether several hidden nodes are asked about in one question. It takes batches.
     pub multiqueries: bool,
+    /// Whether a large multiquery that fails is repeated in groups, not node by node.
+    pub regroup: bool,
+    /// Whether nodes that come into view are taken as visible if such nodes are seldom hidden.
+    pub guess: bool,
     /// Where the probability comes from that a hidden node stays hidden.
     pub p_keep: KeepRule,
     /// Levels to which tight volumes go down.
@@ -91,6 +112,7 @@ pub struct ChcPlusPlus {
     volume: TightVolume,
     spells: Spells,
     rate: KeepRate,
+    odds: Odds,
     /// Questions asked since answers were last looked for.
     unseen: u32,
     counts: Counts,
@@ -102,6 +124,7 @@ struct Counts {
     batches: u32,
     multiqueries: u32,
     failed: u32,
+    guessed: u32,
 }
 
 impl Default for ChcPlusPlus {
@@ -113,6 +136,8 @@ impl Default for ChcPlusPlus {
             randomised: true,
             tight: true,
             multiqueries: true,
+            regroup: true,
+            guess: true,
             p_keep: KeepRule::Measured,
             d_max: 3,
             s_max: 1.4,
@@ -122,6 +147,7 @@ impl Default for ChcPlusPlus {
             volume: TightVolume::default(),
             spells: Spells::default(),
             rate: KeepRate::default(),
+            odds: Odds::default(),
             unseen: 0,
             counts: Counts::default(),
         }
@@ -141,6 +167,7 @@ impl Policy for ChcPlusPlus {
         self.coherence.virtual_leaf = if self.tight { self.virtual_leaf } else { 0 };
         self.coherence.begin(cx);
         self.queues.begin();
+        self.odds.begin();
         self.unseen = 0;
         self.counts = Counts::default();
     }
@@ -170,7 +197,7 @@ impl Policy for ChcPlusPlus {
                 self.unseen = 0;
                 return Action::Wait(Wait::Block);
             } else {
-                self.coherence.pull_up(cx, |node| self.spells.is_hidden(node, cx.frame));
+                self.coherence.pull_up(cx, |node| self.spells.is_hidden(node, cx.frame, true));
                 return Action::Done;
             }
         }
@@ -182,6 +209,9 @@ impl Policy for ChcPlusPlus {
         let lost = matches!(answer, Answer::Unknown);
         let failed = visible && !lost && asked.nodes.len() > 1;
         self.counts.failed += u32::from(failed);
+        if failed && self.regroup && !asked.is_group && asked.nodes.len() > multiquery::EACH {
+            return self.queues.wait_in_groups(asked.nodes);
+        }
         for node in asked.nodes {
             let node = self.queues.node(node).clone();
             if failed {
@@ -189,12 +219,15 @@ impl Policy for ChcPlusPlus {
                 continue;
             }
             if !asked.was_visible && !lost {
-                self.rate.saw(node.hidden_for, !answer.is_visible(0));
+                self.rate.saw(node.hidden_for, node.alike, !answer.is_visible(0));
+                if node.hidden_for == 0 {
+                    self.odds.saw(node.alike.class, 1, !visible);
+                }
             }
             if visible {
                 self.found_visible(cx, node.front, asked.was_visible, answer);
             } else {
-                self.found_hidden(cx, node.front.node, answer);
+                self.found_hidden(cx, &node, asked.was_visible, answer);
             }
         }
     }
@@ -202,6 +235,7 @@ impl Policy for ChcPlusPlus {
     fn reset(&mut self) {
         self.coherence.reset();
         self.spells.clear();
+        self.odds = Odds::default();
     }
 
     fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
@@ -209,8 +243,13 @@ impl Policy for ChcPlusPlus {
     }
 
     fn counters(&self) -> Vec<Counter> {
-        let Counts { batches, multiqueries, failed } = self.counts;
-        let own = [("batches", batches), ("multiqueries", multiqueries), ("failed_multiqueries", failed)];
+        let Counts { batches, multiqueries, failed, guessed } = self.counts;
+        let own = [
+            ("batches", batches),
+            ("multiqueries", multiqueries),
+            ("failed_multiqueries", failed),
+            ("guessed_visible", guessed),
+        ];
         let own = own.into_iter().map(|(key, count)| Counter { key, count });
         own.chain(self.coherence.counters()).collect()
     }
@@ -223,6 +262,12 @@ impl Policy for ChcPlusPlus {
             Dial::new("randomised", self.randomised, "spread the first questions of what turned visible"),
             Dial::new("tight", self.tight, "ask about the boxes of descendants"),
             Dial::new("multiqueries", self.multiqueries, "ask about several hidden nodes in one question"),
+            Dial::new("regroup", self.regroup, "repeat large multiqueries that fail in groups"),
+            Dial::new(
+                "guess",
+                self.guess,
+                "take as visible what comes into view if such nodes are seldom hidden",
+            ),
             Dial::choice("p_keep", self.p_keep, KEEP_RULES, "how likely hidden nodes are to stay hidden"),
             Dial::new("d_max", self.d_max, "levels to which tight volumes go down"),
             Dial::new("s_max", self.s_max, "surface of a tight volume to that of the node's box, at most"),
@@ -238,6 +283,8 @@ impl Policy for ChcPlusPlus {
             "randomised" => self.randomised = dial::number(key, value, false..=true)?,
             "tight" => self.tight = dial::number(key, value, false..=true)?,
             "multiqueries" => self.multiqueries = dial::number(key, value, false..=true)?,
+            "regroup" => self.regroup = dial::number(key, value, false..=true)?,
+            "guess" => self.guess = dial::number(key, value, false..=true)?,
             "p_keep" => self.p_keep = dial::choice(key, value, KEEP_RULES)?,
             "d_max" => self.d_max = dial::number(key, value, 0..=32)?,
             "s_max" => self.s_max = dial::number(key, value, 0.0..=1000.0)?,
@@ -272,21 +319,51 @@ impl ChcPlusPlus {
             }
             Boxes::Ask(boxes) => boxes,
         };
+        let (kind, _) = self.coherence.memory(cx, front.node);
+        let class = Class::new(cx, kind, &self.queues.proxies[boxes.clone()]);
         if was_visible {
-            self.queues.wait_visible(Waiting { front, boxes, hidden_for: 0, p_keep: 0.0 });
+            let alike = Alike { class, was_visible };
+            self.queues.wait_visible(Waiting { front, boxes, alike, hidden_for: 0, p_keep: 0.0 });
             if !self.batching {
                 self.unseen += 1;
                 self.issue_visible();
             }
             self.coherence.take_as_visible(cx, front);
         } else {
-            let hidden_for = self.spells.frames(front.node, cx.frame);
-            let p_keep = if self.multiqueries { self.rate.p_keep(self.p_keep, hidden_for) } else { 0.0 };
-            let waiting = self.queues.wait_invisible(Waiting { front, boxes, hidden_for, p_keep });
+            let (hidden_for, was_visible) = self.spells.frames(front.node, cx.frame);
+            let alike = Alike { class, was_visible };
+            let hidden = self.odds.hidden(class, 1);
+            if self.guess && hidden_for == 0 && self.is_guessed_visible(cx, front.node, class, hidden) {
+                self.counts.guessed += 1;
+                if class.is_leaf {
+                    self.coherence.assume_visible(
+                        cx,
+                        front.node,
+                        sampling::soon(front.node, cx.frame, self.n_av),
+                    );
+                }
+                return self.coherence.take_as_visible(cx, front);
+            }
+            let p_keep = match self.multiqueries {
+                true if self.guess && hidden_for == 0 => hidden,
+                true => self.rate.p_keep(self.p_keep, hidden_for, alike),
+                false => 0.0,
+            };
+            let waiting = self.queues.wait_invisible(Waiting { front, boxes, alike, hidden_for, p_keep });
             if !self.batching || waiting >= self.b as usize {
                 self.issue_batch();
             }
         }
+    }
+
+    /// Whether a node of which nothing is known is taken as visible, `hidden` being the probability that
+    /// it is not: an inner one if it is cheaper to ask about its children than about it first.
+    fn is_guessed_visible(&self, cx: &Context<'_>, node: NodeId, class: Class, hidden: f32) -> bool {
+        if class.is_leaf {
+            return hidden < SELDOM;
+        }
+        let children = cx.tree.children(node).into_iter().flatten();
+        hidden * (children.filter(|&child| cx.tree.count(child) > 0).count() as f32) < 1.0
     }
 
     /// The proxies of a node's boxes.
@@ -317,7 +394,7 @@ impl ChcPlusPlus {
 
     /// Issues the i-queue; false if it is empty.
     fn issue_batch(&mut self) -> bool {
-        let questions = self.queues.issue_invisible();
+        let questions = self.queues.issue_invisible(self.regroup);
         self.counts.batches += u32::from(!questions.is_empty());
         let multiqueries = questions.clone().filter(|&question| self.queues.is_multiquery(question));
         self.counts.multiqueries += multiqueries.count() as u32;
@@ -341,18 +418,24 @@ impl ChcPlusPlus {
         let sampling = Sampling { n_av: self.n_av, randomised: self.randomised };
         let leaf = sampling.term(front.node, cx.frame, !was_visible);
         // Its children cost little in the questions of others; it alone would spoil them, over and over.
-        let inner = if self.multiqueries { self.n_av.saturating_sub(1) } else { 0 };
+        // The more often in vain, the longer it stays open.
+        let inner = match (self.multiqueries, self.regroup) {
+            (false, _) => 0,
+            (true, false) => self.n_av.saturating_sub(1),
+            (true, true) => (self.n_av << self.coherence.streak(front.node).min(3)).saturating_sub(1),
+        };
         self.coherence.found_visible(cx, front.node, Terms { leaf, inner }.after(answer));
         if !was_visible {
             self.coherence.take_as_visible(cx, front);
         }
     }
 
-    fn found_hidden(&mut self, cx: &Context<'_>, node: NodeId, answer: Answer<'_>) {
-        self.coherence.found_hidden(cx, node);
+    fn found_hidden(&mut self, cx: &Context<'_>, node: &Waiting, was_visible: bool, answer: Answer<'_>) {
+        self.coherence.found_hidden(cx, node.front.node);
         // What shows a few samples, fewer than the threshold, would spoil a multiquery.
         if !answer.is_visible(0) {
-            self.spells.is_hidden(node, cx.frame);
+            let once_visible = was_visible || node.alike.class.kind == Kind::OnceVisible;
+            self.spells.is_hidden(node.front.node, cx.frame, once_visible);
         }
     }
 }

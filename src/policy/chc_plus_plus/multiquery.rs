@@ -12,6 +12,15 @@
 //! M grows, in descending order of `p_keep`, while V rises. The formula charges 1 + p_fail even to a
 //! single node, which nobody asks about twice; then, for a low `p_keep`, V would climb with |M|, to
 //! one giant query that is bound to fail. So V = 1 for a single node.
+//!
+//! *Groups* (ours). If more than [`EACH`] nodes fail together, they are asked about in `g = ⌈√|M|⌉` groups,
+//! and only those of a group that fails one by one:
+//!
+//! ```text
+//! C = 1 + p_fail · g + |M| · (1 − (Π p_keep)^(1/g))
+//! ```
+
+use super::super::odds::{COVERAGES, Class};
 
 /// Where `p_keep` comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,46 +31,88 @@ pub enum KeepRule {
     Analytic,
 }
 
+/// Nodes of a multiquery up to which all are repeated one by one: groups would save nothing.
+pub(super) const EACH: usize = 4;
+
+/// Into how many groups the nodes of a multiquery are put that failed.
+pub(super) fn groups(nodes: usize) -> usize {
+    (nodes as f32).sqrt().ceil() as usize
+}
+
 /// How often nodes that had been hidden for `i` frames stayed hidden.
 #[derive(Clone, Debug, Default)]
 pub(super) struct KeepRate {
     /// By `i`, as far as was seen: those that stayed hidden (`n_keep`), and all (`n_all`).
-    seen: Vec<(u64, u64)>,
+    seen: Vec<Seen>,
+    /// The same of nodes that are alike; see [`Alike::row`].
+    alike: Vec<Vec<Seen>>,
+}
+
+type Seen = (u64, u64);
+
+/// Hidden nodes that are alike.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Alike {
+    pub(super) class: Class,
+    /// Whether they were visible before they were hidden.
+    pub(super) was_visible: bool,
+}
+
+impl Alike {
+    fn row(self) -> usize {
+        let Class { is_leaf, coverage, .. } = self.class;
+        4 * coverage as usize + 2 * usize::from(is_leaf) + usize::from(self.was_visible)
+    }
 }
 
 impl KeepRate {
     /// Frames that are told apart; more count as the most.
     const RANGE: u32 = 64;
 
+    /// Nodes that are alike, from which on they speak for themselves.
+    const ENOUGH: u64 = 32;
+
     /// A node that had been hidden for `i` frames stayed so, or did not.
-    pub(super) fn saw(&mut self, i: u32, kept: bool) {
+    pub(super) fn saw(&mut self, i: u32, alike: Alike, kept: bool) {
         let i = i.min(Self::RANGE - 1) as usize;
-        if self.seen.len() <= i {
-            self.seen.resize(i + 1, (0, 0));
+        self.alike.resize(4 * COVERAGES, Vec::new());
+        for seen in [&mut self.seen, &mut self.alike[alike.row()]] {
+            if seen.len() <= i {
+                seen.resize(i + 1, (0, 0));
+            }
+            seen[i].0 += u64::from(kept);
+            seen[i].1 += 1;
         }
-        self.seen[i].0 += u64::from(kept);
-        self.seen[i].1 += 1;
     }
 
     /// The probability that a node which has been hidden for `i` frames stays so. Where nothing was
     /// seen, what was seen of the nearest shorter time holds.
-    pub(super) fn p_keep(&self, rule: KeepRule, i: u32) -> f32 {
+    pub(super) fn p_keep(&self, rule: KeepRule, i: u32, alike: Alike) -> f32 {
+        let alike = self.alike.get(alike.row()).and_then(|seen| seen.get(i.min(Self::RANGE - 1) as usize));
         let known = self.seen.len().min(i as usize + 1);
-        match self.seen[..known].iter().rfind(|(_, all)| *all > 0) {
+        let any = || self.seen[..known].iter().rfind(|(_, all)| *all > 0);
+        match alike.filter(|(_, all)| *all >= Self::ENOUGH).or_else(any) {
             Some(&(kept, all)) if rule == KeepRule::Measured => (kept as f64 / all as f64) as f32,
             _ => 0.99 - 0.7 * libm::expf(-(i as f32)),
         }
     }
 }
 
-/// How many of the first nodes to ask about together, for `p_keep` in descending order. O(that).
-pub(super) fn size(mut p_keep: impl Iterator<Item = f32>) -> usize {
+/// How many of the first nodes to ask about together, for `p_keep` in descending order; with groups or
+/// without. O(that).
+pub(super) fn size(mut p_keep: impl Iterator<Item = f32>, regroup: bool) -> usize {
     let Some(mut all_keep) = p_keep.next() else { return 0 };
     let (mut size, mut value) = (1, 1.0);
     for p in p_keep {
         all_keep *= p;
         let benefit = (size + 1) as f32;
-        let cost = 1.0 + (1.0 - all_keep) * benefit;
+        let cost = match size + 1 {
+            nodes if regroup && nodes > EACH => {
+                let groups = groups(nodes) as f32;
+                1.0 + (1.0 - all_keep) * groups + benefit * (1.0 - libm::powf(all_keep, 1.0 / groups))
+            }
+            _ => 1.0 + (1.0 - all_keep) * benefit,
+        };
         if benefit / cost <= value {
             break;
         }
@@ -72,10 +123,14 @@ pub(super) fn size(mut p_keep: impl Iterator<Item = f32>) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::odds::Kind;
     use super::*;
 
+    const ALIKE: Alike =
+        Alike { class: Class { kind: Kind::Hidden, is_leaf: true, coverage: 3 }, was_visible: false };
+
     fn size_of(p_keep: &[f32]) -> usize {
-        size(p_keep.iter().copied())
+        size(p_keep.iter().copied(), false)
     }
 
     #[test]
@@ -108,22 +163,44 @@ mod tests {
     }
 
     #[test]
+    fn groups_make_larger_sets_worth_a_question() {
+        let both = |p: f32| [false, true].map(|regroup| size([p; 100].into_iter(), regroup));
+        assert_eq!(both(0.9), [4, 4], "too fickle for groups");
+        // |M| = 10: 10 / (1 + 0.096 · 10) = 5.1; 25 / (1 + 0.222 · 5 + 25 · 0.049) = 7.5.
+        let [each, grouped] = both(0.99);
+        assert!((9..=11).contains(&each) && (16..=30).contains(&grouped), "{each} {grouped}");
+        assert!((0..=70).all(|p| both(p as f32 / 100.0) == [1, 1]), "the doomed are still asked alone");
+    }
+
+    #[test]
+    fn those_that_are_alike_speak_for_themselves_when_they_are_many() {
+        let mut rate = KeepRate::default();
+        let others = Alike { was_visible: true, ..ALIKE };
+        (0..100).for_each(|n| rate.saw(5, ALIKE, n >= 2));
+        (0..20).for_each(|_| rate.saw(5, others, false));
+        let p = |rate: &KeepRate, alike| rate.p_keep(KeepRule::Measured, 5, alike);
+        assert_eq!((p(&rate, ALIKE), p(&rate, others)), (0.98, 98.0 / 120.0));
+        (0..20).for_each(|_| rate.saw(5, others, false));
+        assert_eq!((p(&rate, ALIKE), p(&rate, others)), (0.98, 0.0));
+    }
+
+    #[test]
     fn the_analytic_rate_is_the_published_one() {
         let rate = KeepRate::default();
-        let p = |i| rate.p_keep(KeepRule::Analytic, i);
+        let p = |i| rate.p_keep(KeepRule::Analytic, i, ALIKE);
         assert!((p(0) - 0.29).abs() < 1e-6 && (p(1) - 0.732_48).abs() < 1e-4 && (p(50) - 0.99).abs() < 1e-6);
-        assert_eq!(rate.p_keep(KeepRule::Measured, 3), p(3), "nothing was measured yet");
+        assert_eq!(rate.p_keep(KeepRule::Measured, 3, ALIKE), p(3), "nothing was measured yet");
     }
 
     #[test]
     fn the_measured_rate_is_constant_where_nothing_was_measured() {
         let mut rate = KeepRate::default();
-        (0..4).for_each(|n| rate.saw(1, n > 0));
-        (0..10).for_each(|n| rate.saw(3, n > 0));
-        let p = |i| rate.p_keep(KeepRule::Measured, i);
+        (0..4).for_each(|n| rate.saw(1, ALIKE, n > 0));
+        (0..10).for_each(|n| rate.saw(3, ALIKE, n > 0));
+        let p = |i| rate.p_keep(KeepRule::Measured, i, ALIKE);
         assert_eq!([p(1), p(2), p(3), p(4), p(1000)], [0.75, 0.75, 0.9, 0.9, 0.9]);
-        assert_eq!(p(0), rate.p_keep(KeepRule::Analytic, 0), "nothing shorter was measured");
-        rate.saw(u32::MAX, true);
-        assert_eq!(rate.p_keep(KeepRule::Measured, 5000), 1.0);
+        assert_eq!(p(0), rate.p_keep(KeepRule::Analytic, 0, ALIKE), "nothing shorter was measured");
+        rate.saw(u32::MAX, ALIKE, true);
+        assert_eq!(rate.p_keep(KeepRule::Measured, 5000, ALIKE), 1.0);
     }
 }

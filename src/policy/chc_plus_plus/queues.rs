@@ -12,7 +12,7 @@
 use std::ops::Range;
 
 use super::super::front::Front;
-use super::multiquery;
+use super::multiquery::{self, Alike};
 use crate::geom::Proxy;
 use crate::query::Ticket;
 
@@ -22,6 +22,8 @@ pub(super) struct Waiting {
     pub(super) front: Front,
     /// Its boxes, among the frame's proxies.
     pub(super) boxes: Range<usize>,
+    /// What it is like.
+    pub(super) alike: Alike,
     /// Frames for which it had been hidden.
     pub(super) hidden_for: u32,
     /// How likely it is that it still is; 0 for a node that must be asked about alone.
@@ -35,6 +37,8 @@ pub(super) struct Asked {
     pub(super) nodes: Range<usize>,
     /// Whether it is about a leaf that was visible in the last frame.
     pub(super) was_visible: bool,
+    /// Whether it repeats a part of one that failed.
+    pub(super) is_group: bool,
     answered: bool,
 }
 
@@ -43,6 +47,9 @@ pub(super) struct Asked {
 pub(super) struct Queues {
     pub(super) proxies: Vec<Proxy>,
     invisible: Vec<Waiting>,
+    /// Nodes of multiqueries that failed, in groups; and how many each has.
+    groups: Vec<Waiting>,
+    sizes: Vec<usize>,
     visible: Vec<Waiting>,
     /// The nodes asked about, in the order of asking.
     nodes: Vec<Waiting>,
@@ -58,6 +65,8 @@ impl Queues {
     pub(super) fn begin(&mut self) {
         self.proxies.clear();
         self.invisible.clear();
+        self.groups.clear();
+        self.sizes.clear();
         self.visible.clear();
         self.nodes.clear();
         self.asked.clear();
@@ -70,23 +79,36 @@ impl Queues {
         self.invisible.len()
     }
 
+    /// Puts nodes that were asked about together into the i-queue again, in groups.
+    pub(super) fn wait_in_groups(&mut self, nodes: Range<usize>) {
+        let size = nodes.len().div_ceil(multiquery::groups(nodes.len()));
+        self.sizes.extend(self.nodes[nodes.clone()].chunks(size).map(<[Waiting]>::len));
+        self.groups.extend_from_slice(&self.nodes[nodes]);
+    }
+
     /// Puts a leaf into the v-queue.
     pub(super) fn wait_visible(&mut self, leaf: Waiting) {
         self.visible.push(leaf);
     }
 
-    /// Makes questions of the i-queue, the likeliest to stay hidden together: their numbers.
-    /// O(n log n).
-    pub(super) fn issue_invisible(&mut self) -> Range<usize> {
+    /// Makes questions of the i-queue, the likeliest to stay hidden together: their numbers. Sets may be
+    /// larger if they are repeated in groups. O(n log n).
+    pub(super) fn issue_invisible(&mut self, regroup: bool) -> Range<usize> {
         let first = self.asked.len();
+        for size in self.sizes.drain(..) {
+            let nodes = self.nodes.len()..self.nodes.len() + size;
+            self.nodes.extend(self.groups.drain(..size));
+            self.asked.push(Asked { nodes, was_visible: false, is_group: true, answered: false });
+        }
         // Stable: among equals, the nearest go first.
         self.invisible.sort_by(|a, b| b.p_keep.total_cmp(&a.p_keep));
         let mut left = &self.invisible[..];
         while !left.is_empty() {
-            let (together, rest) = left.split_at(multiquery::size(left.iter().map(|node| node.p_keep)));
+            let size = multiquery::size(left.iter().map(|node| node.p_keep), regroup);
+            let (together, rest) = left.split_at(size);
             let nodes = self.nodes.len()..self.nodes.len() + together.len();
             self.nodes.extend_from_slice(together);
-            self.asked.push(Asked { nodes, was_visible: false, answered: false });
+            self.asked.push(Asked { nodes, was_visible: false, is_group: false, answered: false });
             left = rest;
         }
         self.invisible.clear();
@@ -99,7 +121,12 @@ impl Queues {
         for leaf in self.visible.drain(..) {
             let node = self.nodes.len();
             self.nodes.push(leaf);
-            self.asked.push(Asked { nodes: node..node + 1, was_visible: true, answered: false });
+            self.asked.push(Asked {
+                nodes: node..node + 1,
+                was_visible: true,
+                is_group: false,
+                answered: false,
+            });
         }
         self.issued(first)
     }

@@ -24,6 +24,11 @@ impl Sampling {
     }
 }
 
+/// Frames for which a leaf goes unasked that was drawn on a guess: one to three, fewer than `n_av`.
+pub(super) fn soon(node: NodeId, frame: u32, n_av: u32) -> u32 {
+    dice(node, frame) % n_av.clamp(1, 3)
+}
+
 /// As good as random, and the same whatever order the answers come in (SplitMix64).
 fn dice(node: NodeId, frame: u32) -> u32 {
     let mut x = (u64::from(frame) << 32 | u64::from(node.index)).wrapping_add(0x9E37_79B9_7F4A_7C15);

@@ -4,6 +4,8 @@
 //! triangle yields the same bits, so a sample is in sight exactly if it is not below the stored one. Most
 //! of what is hidden is skipped whole by the hierarchy.
 
+use rayon::prelude::*;
+
 use super::super::SoftwareQueries;
 use super::super::isa::{Isa, LANES, Mask};
 use super::super::layout::{BLOCK_PIXELS, Block};
@@ -36,10 +38,10 @@ impl SoftwareQueries {
         let Owned { calls, owners, seen } = &mut self.owned;
         let words = calls.len().div_ceil(64).max(1);
         seen.clear();
-        seen.resize(words * (self.depth.rows().count() + 1), 0);
+        seen.resize(words * (self.depth.rows().len() + 1), 0);
         let (all, by_band) = seen.split_at_mut(words);
-        let held = self.depth.blocks().chunks(many).zip(self.hi_z.farthest().chunks(many));
-        let bands = held.zip(by_band.chunks_mut(words)).zip(self.depth.rows());
+        let held = self.depth.blocks().par_chunks(many).zip(self.hi_z.farthest().par_chunks(many));
+        let bands = held.zip(by_band.par_chunks_mut(words)).zip(self.depth.rows());
         let sinks = bands.map(|(((depth, farthest), seen), rows)| OwnerSink { depth, farthest, seen, rows });
         self.bands.rasterise(self.simd, view, calls, sinks);
         for band in by_band.chunks(words) {
