@@ -92,7 +92,12 @@ impl Default for Shaders {
     fn default() -> Self {
         Self {
             count_fragments: shader!("shared/counts.wgsl", "shared/rectangle.wgsl", "count_fragments.wgsl"),
-            count_workgroups: shader!("shared/counts.wgsl", "shared/tiles.wgsl", "shared/add_lanes.wgsl", "count_workgroups.wgsl"),
+            count_workgroups: shader!(
+                "shared/counts.wgsl",
+                "shared/tiles.wgsl",
+                "shared/add_lanes.wgsl",
+                "count_workgroups.wgsl"
+            ),
             count_subgroups: shader!(
                 "shared/counts.wgsl",
                 "shared/tiles.wgsl",

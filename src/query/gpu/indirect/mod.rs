@@ -344,7 +344,7 @@ impl IndirectCuller {
             // By now the frame before has been submitted.
             State::Recorded => counters.await_bytes(),
             State::Arrived => {
-                self.drawn = counters.read(|bytes| bytemuck::pod_read_unaligned(bytes)).or(self.drawn);
+                self.drawn = counters.read(bytemuck::pod_read_unaligned).or(self.drawn);
                 counters.reclaim();
             }
             _ => {}

@@ -4,6 +4,9 @@
 //!   boxes, by slot ──project──▶ a proxy and a verdict each ──raster, or pyramid and hi_z──▶ verdicts
 //! ```
 //!
+//! `SweepTest::Rays` is answered as `Raster` is: by contract the answer is the same. `Owners` is not
+//! known here, which draws.
+//!
 //! | file | |
 //! |---|---|
 //! | `boxes`, `mirror` | the objects' boxes on the device, uploaded by what has changed |
