@@ -14,7 +14,7 @@
 //! Objects that keep moving gather at the front of their run, so that most blocks are of movers
 //! alone or of objects that stand still: the latter are not touched.
 
-use super::block::{Block, LANES};
+use super::block::{Block, LANES, lanes};
 use super::gather::Words;
 use super::hull::Hull;
 use super::runs::{FreeRuns, Run};
@@ -74,9 +74,15 @@ impl Known {
 }
 
 impl Blocks {
-    /// The blocks of a run that hold objects.
-    pub(crate) fn of(&self, run: Run) -> &[Block] {
-        &self.blocks[run.used()]
+    /// The blocks of a run that hold objects, with a bit for each lane that does.
+    #[inline(always)]
+    pub(crate) fn of(&self, run: Run) -> impl Iterator<Item = (&Block, u16)> {
+        let mut left = run.len as usize;
+        self.blocks[run.used()].iter().map(move |block| {
+            let held = if left < LANES { (1 << left) - 1 } else { u16::MAX };
+            left = left.saturating_sub(LANES);
+            (block, held)
+        })
     }
 
     /// The node that holds an object, if one does.
@@ -208,9 +214,7 @@ impl Blocks {
 
     /// The objects of a run, with their boxes, in storage order.
     pub(crate) fn items(&self, run: Run) -> impl Iterator<Item = (u32, Aabb)> {
-        self.of(run).iter().flat_map(|block| {
-            (0..LANES).map(|lane| (block.slots[lane], block.aabb(lane))).take_while(|(slot, _)| *slot != NONE)
-        })
+        self.of(run).flat_map(|(block, held)| lanes(held).map(|lane| (block.slots[lane], block.aabb(lane))))
     }
 
     /// Lists the blocks whose objects have new boxes, in order, and holds them for refreshed. A look
