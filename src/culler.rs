@@ -399,10 +399,10 @@ impl DrawnList {
                 continue;
             }
             let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), mask) else { continue };
-            for block in cx.tree.own(node) {
+            for (block, held) in cx.tree.own(node) {
                 let outside = cx.frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
                 for (lane, &slot) in block.slots.iter().enumerate() {
-                    if slot != u32::MAX && outside & (1 << lane) == 0 {
+                    if u32::from(held) & !outside & (1 << lane) != 0 {
                         self.queue(scene, slot);
                     }
                 }

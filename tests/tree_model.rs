@@ -224,12 +224,8 @@ impl Tested {
         while let Some((node, above)) = stack.pop() {
             let mut boxes: Vec<Aabb> = above;
             boxes.push(tree.query_box(node));
-            for block in tree.own(node) {
-                for lane in 0..tercet::tree::LANES {
-                    let held =
-                        block.slots[lane] == u32::MAX || boxes.iter().all(|b| b.contains(&block.aabb(lane)));
-                    assert!(held, "an object sticks out of a question's box");
-                }
+            for (_, aabb) in tree.own_objects(node) {
+                assert!(boxes.iter().all(|b| b.contains(&aabb)), "an object sticks out of a question's box");
             }
             stack.extend(tree.children(node).into_iter().flatten().map(|c| (c, boxes.clone())));
         }

@@ -6,7 +6,8 @@
 //! the thread alone. Prints tables of ratios of medians, by number, by manner of moving, of the
 //! mirror of a world, and of two threads by the wall's clock; writes them as CSV, and plots.
 //!
-//! `cargo bench --bench tree_maintenance [-- --quick] [-- --count N] [-- --out DIR]`
+//! `cargo bench --bench tree_maintenance [-- --quick] [-- --count N] [-- --moving SHARE]
+//! [-- --part number|manner|sync|threads] [-- --out DIR]`
 
 #[path = "../../examples/support/axis.rs"]
 mod axis;
@@ -36,12 +37,26 @@ struct Flags {
     /// Only worlds of so many boxes.
     #[arg(long)]
     count: Option<usize>,
+    /// Only this share of the boxes moves.
+    #[arg(long)]
+    moving: Option<f64>,
+    /// Only this table.
+    #[arg(long)]
+    part: Option<Part>,
     /// Where the tables and plots go.
     #[arg(long, default_value = "out/tree_maintenance")]
     out: PathBuf,
     /// What cargo says to every bench.
     #[arg(long, hide = true)]
     bench: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Part {
+    Number,
+    Manner,
+    Sync,
+    Threads,
 }
 
 fn main() -> anyhow::Result<()> {
@@ -64,44 +79,51 @@ fn measure_all(flags: &Flags) -> anyhow::Result<()> {
         measure::run(Case { name: name.to_owned(), count, moving, manner, asking, frames, runs })
     };
 
-    let mut table = Table::new(&flags.out.join("table.csv"), &table::BY_NUMBER)?;
-    let mut rows: Vec<Row> = Vec::new();
-    for &count in &counts {
-        for moving in [0.0, 0.2, 0.5, 1.0] {
-            let row = measured("usual", count, moving, Manner::USUAL, Asking::Nobody);
-            table.add(table::by_number(&row))?;
+    let wanted = |part| flags.part.is_none_or(|only| only == part);
+    let large = || counts.iter().copied().filter(|&count| count >= 100_000 || flags.quick);
+
+    if wanted(Part::Number) {
+        let mut table = Table::new(&flags.out.join("table.csv"), &table::BY_NUMBER)?;
+        let mut rows: Vec<Row> = Vec::new();
+        for &count in &counts {
+            for moving in flags.moving.map_or(vec![0.0, 0.2, 0.5, 1.0], |share| vec![share]) {
+                let row = measured("usual", count, moving, Manner::USUAL, Asking::Nobody);
+                table.add(table::by_number(&row))?;
+                rows.push(row);
+            }
+        }
+        plot::by_number(&flags.out.join("plot.png"), &rows)?;
+    }
+    if wanted(Part::Manner) {
+        let mut table = Table::new(&flags.out.join("manners.csv"), &table::BY_MANNER)?;
+        let mut rows: Vec<Row> = Vec::new();
+        let usual = Manner::USUAL;
+        for (name, manner, asking) in [
+            ("usual", usual, Asking::Nobody),
+            ("slow: 0.01 m", Manner { step: 0.01, ..usual }, Asking::Nobody),
+            ("fast: 0.5 m", Manner { step: 0.5, ..usual }, Asking::Nobody),
+            ("gathered", Manner { gathered: true, ..usual }, Asking::Nobody),
+            ("large: 0.5 to 5 m", Manner { extent: 5.0, ..usual }, Asking::Nobody),
+            ("fine leaves", usual, Asking::Once),
+            ("fine, adapting", usual, Asking::EachFrame),
+        ] {
+            let row = measured(name, counts[counts.len().min(2) - 1], 0.5, manner, asking);
+            table.add(table::by_manner(&row))?;
             rows.push(row);
         }
+        plot::by_manner(&flags.out.join("manners.png"), &rows)?;
     }
-    plot::by_number(&flags.out.join("plot.png"), &rows)?;
-
-    let mut table = Table::new(&flags.out.join("manners.csv"), &table::BY_MANNER)?;
-    let mut rows: Vec<Row> = Vec::new();
-    let usual = Manner::USUAL;
-    for (name, manner, asking) in [
-        ("usual", usual, Asking::Nobody),
-        ("slow: 0.01 m", Manner { step: 0.01, ..usual }, Asking::Nobody),
-        ("fast: 0.5 m", Manner { step: 0.5, ..usual }, Asking::Nobody),
-        ("gathered", Manner { gathered: true, ..usual }, Asking::Nobody),
-        ("large: 0.5 to 5 m", Manner { extent: 5.0, ..usual }, Asking::Nobody),
-        ("fine leaves", usual, Asking::Once),
-        ("fine, adapting", usual, Asking::EachFrame),
-    ] {
-        let row = measured(name, counts[counts.len().min(2) - 1], 0.5, manner, asking);
-        table.add(table::by_manner(&row))?;
-        rows.push(row);
+    if wanted(Part::Sync) {
+        let mut table = Table::new(&flags.out.join("sync.csv"), &sync::NAMES)?;
+        for count in large() {
+            table.add(sync::cells(count))?;
+        }
     }
-    plot::by_manner(&flags.out.join("manners.png"), &rows)?;
-
-    let mut table = Table::new(&flags.out.join("sync.csv"), &sync::NAMES)?;
-    let large = || counts.iter().copied().filter(|&count| count >= 100_000 || flags.quick);
-    for count in large() {
-        table.add(sync::cells(count))?;
-    }
-
-    let mut table = Table::new(&flags.out.join("threads.csv"), &threads::NAMES)?;
-    for (count, moving) in large().flat_map(|count| [(count, 0.2), (count, 1.0)]) {
-        table.add(threads::cells(count, moving)?)?;
+    if wanted(Part::Threads) {
+        let mut table = Table::new(&flags.out.join("threads.csv"), &threads::NAMES)?;
+        for (count, moving) in large().flat_map(|count| [(count, 0.2), (count, 1.0)]) {
+            table.add(threads::cells(count, moving)?)?;
+        }
     }
     Ok(())
 }

@@ -58,7 +58,7 @@ pub fn write(out: &Path, summary: &Summary, scene: &Scene, view: &View, eye: &Ey
         let children = tree.children(node);
         // A binary tree keeps what its planes cut in the inner nodes themselves.
         if below_cut || children.is_some() {
-            cut.extend(tree.own(node).iter().flat_map(|block| block.slots).map(|slot| slot as usize));
+            cut.extend(tree.own_objects(node).map(|(slot, _)| slot as usize));
         }
         for (i, child) in children.into_iter().flatten().enumerate() {
             stack.push((child, below_cut || i == 2));

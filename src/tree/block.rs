@@ -49,6 +49,15 @@ impl Block {
     }
 }
 
+/// The lanes that a mask names, in order.
+pub(super) fn lanes(mut mask: u16) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (lane < LANES).then_some(lane)
+    })
+}
+
 /// The least or the greatest of a row: four at a time, which is what every machine can do at once.
 #[inline(always)]
 fn extreme(row: &[f32; LANES], of: impl Fn(f32, f32) -> f32) -> f32 {

@@ -14,7 +14,7 @@
 //! Objects that keep moving gather at the front of their run, so that most blocks are of movers
 //! alone or of objects that stand still: the latter are not touched.
 
-use super::block::{Block, LANES};
+use super::block::{Block, LANES, lanes};
 use super::gather::Words;
 use super::hull::Hull;
 use super::runs::{FreeRuns, Run};
@@ -36,8 +36,8 @@ pub(crate) struct Blocks {
     pub(super) hulls: Vec<Hull>,
     /// The node that each block belongs to.
     pub(super) owner: Vec<u32>,
-    /// Whether any object of a block has a new box since the last refresh.
-    pub(super) stale: Vec<bool>,
+    /// 1 for a block of which any object has a new box since the last refresh, else 0.
+    pub(super) stale: Vec<u8>,
     /// Whether there is any such block.
     pub(super) any_stale: bool,
     /// What the last refresh of each block found.
@@ -58,25 +58,31 @@ pub(super) struct News {
     pub(super) out: u16,
 }
 
-/// What is known of an object: its newest box, and in the seventh word where it is (block × 16 +
+/// What is known of an object: its newest box, and in the owner's word where it is (block × 16 +
 /// lane; [`NONE`] for an object that is not in the tree, or [`WAITING`]).
 type Known = Words;
 
 impl Known {
-    #[inline]
+    #[inline(always)]
     fn location(&self) -> u32 {
-        self.0[6]
+        self.owners()
     }
 
     fn set_location(&mut self, location: u32) {
-        self.0[6] = location;
+        self.set_owners(location);
     }
 }
 
 impl Blocks {
-    /// The blocks of a run that hold objects.
-    pub(crate) fn of(&self, run: Run) -> &[Block] {
-        &self.blocks[run.used()]
+    /// The blocks of a run that hold objects, with a bit for each lane that does.
+    #[inline(always)]
+    pub(crate) fn of(&self, run: Run) -> impl Iterator<Item = (&Block, u16)> {
+        let mut left = run.len as usize;
+        self.blocks[run.used()].iter().map(move |block| {
+            let held = if left < LANES { (1 << left) - 1 } else { u16::MAX };
+            left = left.saturating_sub(LANES);
+            (block, held)
+        })
     }
 
     /// The node that holds an object, if one does.
@@ -96,7 +102,7 @@ impl Blocks {
         if s >= self.known.len() {
             grow(&mut self.known, s + 1, Known::NOTHING);
         }
-        self.known[s] = Known::new(aabb, [WAITING, NONE]);
+        self.known[s] = Known::new(aabb, WAITING);
     }
 
     /// Whether an object has a box, but no lane yet.
@@ -110,16 +116,16 @@ impl Blocks {
     }
 
     /// Notes the new box of an object that the tree knows. O(1), and no block is touched.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) {
         let Some(known) = self.known.get_mut(slot as usize) else { return };
         let location = known.location();
         if location == NONE {
             return;
         }
-        *known = Known::new(aabb, [location, NONE]);
+        *known = Known::new(aabb, location);
         if location != WAITING {
-            self.stale[location as usize / LANES] = true;
+            self.stale[location as usize / LANES] = 1;
             self.any_stale = true;
         }
     }
@@ -195,7 +201,7 @@ impl Blocks {
         self.blocks[run.used()].fill(Block::EMPTY);
         self.hulls[run.used()].fill(Hull::EMPTY);
         // Of a block that has run empty too: what it was told before was its node's business.
-        self.stale[run.all()].fill(false);
+        self.stale[run.all()].fill(0);
         self.news[run.all()].fill(News::default());
         self.free.put(*run);
         *run = Run::EMPTY;
@@ -208,21 +214,25 @@ impl Blocks {
 
     /// The objects of a run, with their boxes, in storage order.
     pub(crate) fn items(&self, run: Run) -> impl Iterator<Item = (u32, Aabb)> {
-        self.of(run).iter().flat_map(|block| {
-            (0..LANES).map(|lane| (block.slots[lane], block.aabb(lane))).take_while(|(slot, _)| *slot != NONE)
-        })
+        self.of(run).flat_map(|(block, held)| lanes(held).map(|lane| (block.slots[lane], block.aabb(lane))))
     }
 
     /// Lists the blocks whose objects have new boxes, in order, and holds them for refreshed. A look
     /// at a byte for every block.
     pub(super) fn take_stale(&mut self, list: &mut Vec<u32>) {
         for (region, stale) in self.stale.chunks_mut(REGION).enumerate() {
-            if !stale.iter().fold(false, |any, &stale| any | stale) {
+            if stale.iter().fold(0, |any, &stale| any | stale) == 0 {
                 continue;
             }
-            for (i, stale) in stale.iter_mut().enumerate() {
-                if std::mem::take(stale) {
-                    list.push((region * REGION + i) as u32);
+            // Eight at a time: which ones are stale is hard to foretell, how many in eight is easier.
+            for (eight, stale) in stale.chunks_mut(8).enumerate() {
+                let mut bytes = [0; 8];
+                bytes[..stale.len()].copy_from_slice(stale);
+                stale.fill(0);
+                let mut word = u64::from_le_bytes(bytes);
+                while word != 0 {
+                    list.push((region * REGION + eight * 8) as u32 + word.trailing_zeros() / 8);
+                    word &= word - 1;
                 }
             }
         }
@@ -304,7 +314,7 @@ impl Blocks {
             grow(&mut self.blocks, total, Block::EMPTY);
             grow(&mut self.hulls, total, Hull::EMPTY);
             grow(&mut self.owner, total, NONE);
-            grow(&mut self.stale, total, false);
+            grow(&mut self.stale, total, 0);
             grow(&mut self.news, total, News::default());
             run
         });

@@ -10,6 +10,10 @@ use super::refit::{CONTENT, REGROUPED};
 use super::split::{Item, Site, choose};
 use super::{Edit, Tree};
 
+/// Objects from which the leaves of a tree that nobody asks are larger in proportion, and how much larger.
+const LARGE: u32 = 25_000;
+const LARGEST: u32 = 4;
+
 /// How far to build.
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
@@ -49,8 +53,15 @@ impl Tree {
         match self.config.leaf_size {
             LeafSize::Fixed => self.config.bulk_leaf,
             LeafSize::FromCosts if self.asked => self.config.bulk_leaf.max(self.o_split / 2),
-            LeafSize::FromCosts => self.config.bulk_leaf.max(self.config.unasked_leaf),
+            LeafSize::FromCosts => self.config.bulk_leaf.max(self.unasked_leaf()),
         }
+    }
+
+    /// Leaves are there to find what a frustum meets: the more objects there are, the larger may each be,
+    /// for the same share of the world.
+    fn unasked_leaf(&self) -> u32 {
+        let times = (self.nodes.below[0] / LARGE).clamp(1, LARGEST);
+        self.config.unasked_leaf.saturating_mul(times)
     }
 
     /// The size from which a leaf is built anew.

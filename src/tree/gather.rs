@@ -15,40 +15,49 @@ use super::block::{Block, LANES};
 use super::hull::Hull;
 use crate::geom::Aabb;
 
-/// The newest box of an object in half a line of memory: the bits of its least and its greatest
-/// coordinates, then two words that are the owner's.
+/// The newest box of an object in half a line of memory, which two stores write: its least and its
+/// greatest coordinates, then the bits of a word that is the owner's.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Words(pub(super) [u32; 8]);
+pub(super) struct Words([Vec4; 2]);
 
 impl Words {
     /// No box: the empty one.
     pub(super) const NOTHING: Self = {
-        let (low, high) = (f32::INFINITY.to_bits(), f32::NEG_INFINITY.to_bits());
-        Self([low, low, low, high, high, high, u32::MAX, u32::MAX])
+        let (low, high) = (f32::INFINITY, f32::NEG_INFINITY);
+        Self([Vec4::new(low, low, low, high), Vec4::new(high, high, f32::from_bits(u32::MAX), 0.0)])
     };
 
     /// The words of a box, and the owner's.
     #[inline(always)]
-    pub(super) fn new(aabb: &Aabb, owners: [u32; 2]) -> Self {
-        let [a, b, c] = aabb.min.to_array().map(f32::to_bits);
-        let [d, e, f] = aabb.max.to_array().map(f32::to_bits);
-        Self([a, b, c, d, e, f, owners[0], owners[1]])
+    pub(super) fn new(aabb: &Aabb, owners: u32) -> Self {
+        let Aabb { min, max } = *aabb;
+        let near = Vec4::new(min.x, min.y, min.z, max.x);
+        Self([near, Vec4::new(max.y, max.z, f32::from_bits(owners), 0.0)])
     }
 
     /// The box.
     #[inline(always)]
     pub(super) fn aabb(&self) -> Aabb {
-        let [a, b, c, d, e, f, ..] = self.0.map(f32::from_bits);
-        Aabb::new([a, b, c].into(), [d, e, f].into())
+        let [near, far] = self.0;
+        Aabb::new(near.truncate(), Vec3::new(near.w, far.x, far.y))
     }
 
-    /// Half of the words: the compiler makes it one load.
+    /// The owner's word.
+    #[inline(always)]
+    pub(super) fn owners(&self) -> u32 {
+        self.0[1].z.to_bits()
+    }
+
+    /// Changes the owner's word.
+    pub(super) fn set_owners(&mut self, owners: u32) {
+        self.0[1].z = f32::from_bits(owners);
+    }
+
+    /// Half of the words: one load.
     #[inline(always)]
     fn half(&self, half: usize) -> [f32; 4] {
-        let from = 4 * half;
-        let [a, b, c, d] = [self.0[from], self.0[from + 1], self.0[from + 2], self.0[from + 3]];
-        [f32::from_bits(a), f32::from_bits(b), f32::from_bits(c), f32::from_bits(d)]
+        self.0[half].to_array()
     }
 }
 
@@ -93,14 +102,24 @@ impl Gather for V4 {
             let (low, high) = (min[axis], max[axis]);
             moved |= self.cmp_not_eq_f32x16(low, cast(block.min[axis])).0;
             moved |= self.cmp_not_eq_f32x16(high, cast(block.max[axis])).0;
-            out |= self.cmp_lt_f32x16(low, self.splat_f32x16(site.cell.min[axis])).0;
-            out |= self.cmp_gt_f32x16(high, self.splat_f32x16(site.cell.max[axis])).0;
-            let plane = self.splat_f32x16(site.straddled[axis]);
-            out |= self.cmp_ge_f32x16(low, plane).0 | self.cmp_le_f32x16(high, plane).0;
             (block.min[axis], block.max[axis]) = (cast(low), cast(high));
         }
+        let hull = hull(self, &near, &far);
+        // Most blocks lie in their cell as a whole, and most cells are across nothing.
+        if !hull.is_within(&Hull::around(&site.cell)) {
+            for axis in 0..3 {
+                out |= self.cmp_lt_f32x16(min[axis], self.splat_f32x16(site.cell.min[axis])).0;
+                out |= self.cmp_gt_f32x16(max[axis], self.splat_f32x16(site.cell.max[axis])).0;
+            }
+        }
+        if !site.straddled.is_nan_mask().all() {
+            for axis in 0..3 {
+                let plane = self.splat_f32x16(site.straddled[axis]);
+                out |= self.cmp_ge_f32x16(min[axis], plane).0 | self.cmp_le_f32x16(max[axis], plane).0;
+            }
+        }
         out &= self.cmp_lt_f32x16(x, self.splat_f32x16(f32::INFINITY)).0;
-        Found { hull: hull(self, &near, &far), moved, out }
+        Found { hull, moved, out }
     }
 }
 
@@ -228,7 +247,7 @@ mod tests {
             let old = Aabb::new(at - 1.0, at + 1.0);
             let shift = if lane % 3 == 0 { 1.0 } else { 0.0 };
             block.put(lane, 12 - lane as u32, &old);
-            newest.push(Words::new(&Aabb::new(old.min + shift, old.max + 2.0 * shift), [7, u32::MAX]));
+            newest.push(Words::new(&Aabb::new(old.min + shift, old.max + 2.0 * shift), 7));
         }
         newest.reverse();
         let cell = Aabb::new(Vec3::splat(-1.0), Vec3::new(6.0, 9.0, 12.0));

@@ -24,6 +24,12 @@ impl Hull {
         }
     }
 
+    /// Whether it reaches nowhere beyond another.
+    #[inline(always)]
+    pub(super) fn is_within(&self, other: &Self) -> bool {
+        self.0.iter().zip(&other.0).fold(true, |within, (mine, other)| within & (mine >= other))
+    }
+
     #[inline(always)]
     pub(super) fn aabb(&self) -> Aabb {
         let [a, b, c, d, e, f, ..] = self.0;

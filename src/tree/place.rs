@@ -20,7 +20,7 @@ impl Tree {
 
     /// Gives an object that the tree holds a new box, which must be valid; the next
     /// [`Tree::update`] looks whether it stays in its cell. O(1).
-    #[inline]
+    #[inline(always)]
     pub(crate) fn set_bounds(&mut self, slot: u32, aabb: &Aabb) {
         self.blocks.set(slot, aabb);
     }
@@ -114,10 +114,10 @@ impl Tree {
         self.note_crowded(at);
     }
 
-    /// Lists a leaf for the next build when it has grown to the size from which one is tried.
+    /// Lists a leaf for the next build once it has grown to the size from which one is tried.
     fn note_crowded(&mut self, node: u32) {
         let from = self.build_from().max(self.nodes.retry_at[node as usize]);
-        if self.nodes.is_leaf(node) && self.nodes.run[node as usize].len == from {
+        if self.nodes.is_leaf(node) && self.nodes.run[node as usize].len >= from {
             self.crowded.push(node);
         }
     }

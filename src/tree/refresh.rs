@@ -245,7 +245,7 @@ mod tests {
     }
 
     fn front(tree: &Tree, count: usize) -> Vec<u32> {
-        let mut slots: Vec<u32> = tree.own(tree.root()).iter().flat_map(|block| block.slots).collect();
+        let mut slots: Vec<u32> = tree.own_objects(tree.root()).map(|(slot, _)| slot).collect();
         slots.truncate(count);
         slots.sort_unstable();
         slots

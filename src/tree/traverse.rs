@@ -69,9 +69,15 @@ impl Tree {
         self.nodes.run[node.index()].len as usize
     }
 
-    /// The boxes of a node's own objects. Lanes past the last one hold the empty box.
-    pub fn own(&self, node: NodeId) -> &[Block] {
+    /// The blocks that a node's own objects lie in, with a bit for each lane that is theirs: nodes of
+    /// few objects share a block.
+    pub fn own(&self, node: NodeId) -> impl Iterator<Item = (&Block, u16)> {
         self.blocks.of(self.nodes.run[node.index()])
+    }
+
+    /// A node's own objects: their slots, and their boxes.
+    pub fn own_objects(&self, node: NodeId) -> impl Iterator<Item = (u32, Aabb)> {
+        self.blocks.items(self.nodes.run[node.index()])
     }
 
     /// The box around everything in a node and below.

@@ -97,12 +97,9 @@ impl<F: FnMut(&Block, u16)> Visit<'_, F> {
     #[inline(always)]
     fn own<S: Simd>(&mut self, simd: S, node: u32, crossed: u16) {
         let run = self.tree.nodes.run[node as usize];
-        let mut left = run.len as usize;
         let mut edges = [Edge::NONE; Planes::COUNT];
         let edges = self.planes.edges(crossed, &self.tree.nodes.bounds[node as usize], &mut edges);
-        for block in self.tree.blocks.of(run) {
-            let held = if left < LANES { (1 << left) - 1 } else { u16::MAX };
-            left = left.saturating_sub(LANES);
+        for (block, held) in self.tree.blocks.of(run) {
             let lanes = if crossed == 0 { held } else { held & !outside(simd, block, edges) };
             if lanes != 0 {
                 (self.found)(block, lanes);

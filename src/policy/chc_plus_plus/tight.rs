@@ -78,10 +78,7 @@ fn replace(tree: &Tree, node: NodeId, room: usize, parts: &mut Vec<Part>) -> f32
         return f32::NAN;
     }
     let first = parts.len();
-    for block in tree.own(node) {
-        let lanes = (0..block.slots.len()).filter(|&lane| block.slots[lane] != u32::MAX);
-        parts.extend(lanes.map(|lane| Part { aabb: block.aabb(lane), node: None }));
-    }
+    parts.extend(tree.own_objects(node).map(|(_, aabb)| Part { aabb, node: None }));
     parts.extend(children().map(|child| Part { aabb: tree.query_box(child), node: Some(child) }));
     parts[first..].iter().map(|part| part.aabb.surface_area()).sum()
 }
@@ -154,11 +151,8 @@ mod tests {
                     let mut below = vec![node.id];
                     while let Some(id) = below.pop() {
                         below.extend(tree.children(id).into_iter().flatten());
-                        for block in tree.own(id) {
-                            let lanes = (0..block.slots.len()).filter(|&lane| block.slots[lane] != u32::MAX);
-                            for lane in lanes {
-                                assert!(volume.iter().any(|part| part.contains(&block.aabb(lane))));
-                            }
+                        for (_, aabb) in tree.own_objects(id) {
+                            assert!(volume.iter().any(|part| part.contains(&aabb)));
                         }
                     }
                 }
