@@ -399,13 +399,8 @@ impl DrawnList {
                 continue;
             }
             let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), mask) else { continue };
-            for (block, held) in cx.tree.own(node) {
-                let outside = cx.frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
-                for (lane, &slot) in block.slots.iter().enumerate() {
-                    if u32::from(held) & !outside & (1 << lane) != 0 {
-                        self.queue(scene, slot);
-                    }
-                }
+            for (block, lane) in cx.tree.own_inside(node, cx.frustum, mask) {
+                self.queue(scene, block.slots[lane]);
             }
             if extent != Extent::Own {
                 let children = cx.tree.children(node).into_iter().flatten();

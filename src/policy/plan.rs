@@ -64,12 +64,5 @@ pub struct Targets {
 /// The own objects of a node that meet the frustum, by slot.
 pub(super) fn each_own(cx: &Context<'_>, node: NodeId, mut found: impl FnMut(u32)) {
     let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), PlaneMask::ALL) else { return };
-    for block in cx.tree.own(node) {
-        let outside = cx.frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
-        for (lane, &slot) in block.slots.iter().enumerate() {
-            if slot != u32::MAX && outside & (1 << lane) == 0 {
-                found(slot);
-            }
-        }
-    }
+    cx.tree.own_inside(node, cx.frustum, mask).for_each(|(block, lane)| found(block.slots[lane]));
 }

@@ -3,10 +3,10 @@
 use glam::{Vec3, Vec4};
 
 use super::Tree;
-use super::block::Block;
+use super::block::{Block, lanes};
 use super::blocks::NONE;
 use super::node::{NodeId, Role};
-use crate::geom::Aabb;
+use crate::geom::{Aabb, Frustum, PlaneMask};
 
 /// A node as pictures and statistics see it.
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +73,20 @@ impl Tree {
     /// few objects share a block.
     pub fn own(&self, node: NodeId) -> impl Iterator<Item = (&Block, u16)> {
         self.blocks.of(self.nodes.run[node.index()])
+    }
+
+    /// A node's own objects whose boxes meet a frustum, each as a lane of a block; `mask` has the planes
+    /// that the node crosses.
+    pub fn own_inside<'a>(
+        &'a self,
+        node: NodeId,
+        frustum: &'a Frustum,
+        mask: PlaneMask,
+    ) -> impl Iterator<Item = (&'a Block, usize)> {
+        self.own(node).flat_map(move |(block, held)| {
+            let outside = frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
+            lanes(held & !outside as u16).map(move |lane| (block, lane))
+        })
     }
 
     /// A node's own objects: their slots, and their boxes.

@@ -96,13 +96,11 @@ impl Probe {
     }
 }
 
-/// The box of the object of this number, of those in and below a node. O(depth).
+/// The box of the object of this number, of those in and below a node. O(depth + objects of a leaf).
 fn object(tree: &Tree, mut node: NodeId, mut number: usize) -> Option<crate::geom::Aabb> {
     loop {
         if number < tree.own_count(node) {
-            let blocks = tree.own(node);
-            let lanes = blocks.first()?.slots.len();
-            return Some(blocks.get(number / lanes)?.aabb(number % lanes));
+            return tree.own_objects(node).nth(number).map(|(_, bounds)| bounds);
         }
         number -= tree.own_count(node);
         let mut children = tree.children(node)?.into_iter();

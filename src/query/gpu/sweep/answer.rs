@@ -260,12 +260,8 @@ fn list(sweep: &Sweep<'_>, stack: &mut Vec<(NodeId, PlaneMask)>, ids: &mut Vec<O
             continue;
         }
         let Some(mask) = frustum.classify(&tree.bounds(node), mask) else { continue };
-        for block in tree.own(node) {
-            let outside = frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
-            let lanes = block.slots.iter().enumerate();
-            let inside = lanes.filter(|&(lane, &slot)| slot != u32::MAX && outside & (1 << lane) == 0);
-            ids.extend(inside.map(|(_, &slot)| store.id(slot)));
-        }
+        let inside = tree.own_inside(node, frustum, mask);
+        ids.extend(inside.map(|(block, lane)| store.id(block.slots[lane])));
         stack.extend(tree.children(node).into_iter().flatten().map(|child| (child, mask)));
     }
 }

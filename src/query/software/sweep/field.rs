@@ -60,12 +60,10 @@ impl Field<'_> {
     /// Each own object of a node that meets the frustum, unless it is loose. `mask` has the planes that
     /// the node crosses.
     pub(super) fn each_own(&self, node: NodeId, mask: PlaneMask, mut found: impl FnMut(u32, &Aabb)) {
-        for block in self.tree.own(node) {
-            let outside = self.sweep.frustum.outside_lanes(block.min.each_ref(), block.max.each_ref(), mask);
-            for (lane, &slot) in block.slots.iter().enumerate() {
-                if slot != u32::MAX && outside & (1 << lane) == 0 && !self.is_loose(slot) {
-                    found(slot, &block.aabb(lane));
-                }
+        for (block, lane) in self.tree.own_inside(node, self.sweep.frustum, mask) {
+            let slot = block.slots[lane];
+            if !self.is_loose(slot) {
+                found(slot, &block.aabb(lane));
             }
         }
     }
