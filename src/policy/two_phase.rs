@@ -96,7 +96,7 @@ struct Counts {
 
 /// New objects that are drawn at once in any case; the first part has so many, and each further one
 /// twice as many as the one before.
-const PART: usize = 64;
+const PART: usize = 16;
 
 impl<P: Plan> Default for TwoPhase<P> {
     fn default() -> Self {
