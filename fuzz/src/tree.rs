@@ -146,8 +146,7 @@ impl Edited {
                 // In f64: a side may be longer than f32 can say.
                 let size = |b: &Aabb| b.max.as_dvec3() - b.min.as_dvec3();
                 let apart = (size(is) - size(was)).min_element();
-                let rounding =
-                    1e-6 * (before - origin).abs().max_element().max(size(was).max_element());
+                let rounding = 1e-6 * (before - origin).abs().max_element().max(size(was).max_element());
                 assert!(apart >= -rounding, "{was:?} shrank to {is:?}");
             }
             assert!(held.is_some() || now.is_none(), "a bad box was mended by nothing");

@@ -166,7 +166,7 @@ fn boxes_touching_the_frustum_planes() {
     fly(&world, &[view], true);
 }
 
-/// `TERCET_COINCIDENT` sets how many: a million of them take a minute or so.
+/// `TERCET_COINCIDENT` sets how many: a million of them take some minutes.
 #[test]
 fn a_million_coincident_objects() {
     let count = setting("TERCET_COINCIDENT", 20_000) as usize;
