@@ -1,13 +1,15 @@
-//! What questions cost on the GPU: boxes of two sizes, asked about in every way that there is,
+//! What questions cost. On the CPU: boxes of three sizes at three resolutions, on one thread and on
+//! two, beside a plain loop. On the GPU: boxes of two sizes, asked about in every way that there is,
 //! beside native occlusion queries as engines commonly use them (the boxes themselves, a query
 //! each) and beside merely rasterising the same boxes.
 //!
 //! All ways take turns, round by round, on the same depth; the table has medians, and ratios of
 //! medians to those of native queries. `cargo bench --bench queries`; after `--`, `--short` makes it
-//! quick, and `WGPU_BACKEND` chooses among the APIs.
+//! quick, `--software` leaves the GPU out, and `WGPU_BACKEND` chooses among the APIs.
 
 mod conventional;
 mod scene;
+mod software;
 
 use std::time::{Duration, Instant};
 
@@ -32,6 +34,10 @@ type Times = [Duration; 2];
 
 fn main() {
     let short = std::env::args().any(|argument| argument == "--short");
+    software::table(short);
+    if std::env::args().any(|argument| argument == "--software") {
+        return;
+    }
     // How many boxes, and how many rounds.
     let counts: &[_] = if short { &[(100, 3)] } else { &[(100, 15), (1000, 15), (10_000, 7)] };
     for backend in [wgpu::Backends::VULKAN, wgpu::Backends::GL, wgpu::Backends::DX12, wgpu::Backends::METAL] {
@@ -98,7 +104,7 @@ fn compare(scene: &Scene<'_>, rounds: usize) {
     let medians: Vec<[f64; 2]> =
         times.iter().map(|times| [0, 1].map(|k| median(times.iter().map(|took| took[k])))).collect();
     for (((what, way), [device, answered]), visible) in ways.iter().zip(&medians).zip(in_sight) {
-        let (count, area) = (scene.proxies.len(), scene.mean_area());
+        let (count, area) = (scene.proxies.len(), scene::mean_area(&scene.proxies));
         let visible = match way {
             Way::Raster(_) => "–".into(),
             _ => format!("{visible}"),

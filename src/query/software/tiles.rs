@@ -1,6 +1,5 @@
 //! Small triangles: the tiles of sixteen are listed at once, and then sampled one after the other.
 //! Loops of few steps, of which nobody can foretell how many, take longer.
-#![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
 
 use super::isa::{Isa, LANES, Mask, add_each, of_lane, store_each};
 use super::large::Triangle;

@@ -2,7 +2,6 @@
 //!
 //! Everything is f32, unfused, in one fixed order, so that a vertex lands on the same spot
 //! whoever transforms it: that keeps shared edges watertight and re-rasterised triangles equal.
-#![expect(clippy::needless_range_loop, reason = "lanes of several arrays advance together, by index")]
 
 use glam::{Affine3A, DMat4, DVec4, Mat4, Vec3, Vec4};
 
