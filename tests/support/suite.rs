@@ -29,7 +29,12 @@ pub fn is_default(seed: u64) -> bool {
 /// world changes every frame and the camera cuts every sixth. Skipped questions about visible leaves
 /// cost the baseline and CHC much of that.
 pub fn assert_culls_most(name: &str, outcome: Outcome) {
-    let least = if matches!(name, "statistical" | "chc" | "chc++" | "nohc") { 0.4 } else { 0.55 };
+    let least = match name {
+        // Three objects at a time, and after each cut it guesses: in a world of 120 objects that is much.
+        "chc++" => 0.3,
+        "statistical" | "chc" | "nohc" => 0.4,
+        _ => 0.55,
+    };
     let share = outcome.culled as f64 / outcome.hidden as f64;
     println!("{name}: {share:.3} of what was hidden was culled");
     assert!(share > least, "{name} culled only {share:.2} of what was hidden: {outcome:?}");
@@ -63,6 +68,7 @@ pub fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
         ("chc++", 2) => {
             &[("d_max", "32"), ("s_max", "1000"), ("virtual_leaf", "16"), ("n_av", "3"), ("b", "7")]
         }
+        ("nohc", 0) => &[("caution", "0")],
         ("nohc", 1) => &[("in_flight", "1"), ("caution", "10")],
         ("nohc", 2) => &[("in_flight", "64"), ("caution", "0")],
         ("hierarchy-b", 2) => &[("whole", "true")],
