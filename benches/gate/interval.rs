@@ -24,19 +24,18 @@ struct Median {
 }
 
 impl Ratio {
-    /// Of pairs of times, in their order.
-    ///
-    /// # Panics
-    /// With fewer pairs than a block has.
-    pub fn of(pairs: &[(f64, f64)]) -> Self {
-        assert!(pairs.len() >= BLOCK, "too slow: {} pairs", pairs.len());
+    /// Of pairs of times, in their order; none of fewer pairs than a block has.
+    pub fn of(pairs: &[(f64, f64)]) -> Option<Self> {
+        if pairs.len() < BLOCK {
+            return None;
+        }
         let sum = |block: &[(f64, f64)]| {
             block.iter().map(|pair| pair.0).sum::<f64>() / block.iter().map(|pair| pair.1).sum::<f64>()
         };
-        Self {
+        Some(Self {
             pairs: Median::new(pairs.iter().map(|(a, b)| a / b).collect()),
             blocks: Median::new(pairs.chunks_exact(BLOCK).map(sum).collect()),
-        }
+        })
     }
 
     /// Whether the interval of the blocks lies below a bound.

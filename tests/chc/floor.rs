@@ -45,5 +45,7 @@ fn chc_plus_plus_asks_at_most_half_of_chcs_questions() {
         let (plus_plus, drawn_plus_plus) = questions(ChcPlusPlus::default(), &world, &path);
         let ratio = f64::from(chc) / f64::from(plus_plus);
         println!("{way}: {ratio:.2} times the questions; {drawn} objects drawn, {drawn_plus_plus} by CHC++");
+        assert!(ratio >= 2.0, "{way}: {chc} and {plus_plus} questions");
+        assert!(f64::from(drawn_plus_plus) < 1.25 * f64::from(drawn), "{way}: it must not just draw more");
     }
 }

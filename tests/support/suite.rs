@@ -30,7 +30,9 @@ pub fn is_default(seed: u64) -> bool {
 /// cost the baseline and CHC much of that; rectangles against a pyramid say less than outlines.
 pub fn assert_culls_most(name: &str, outcome: Outcome) {
     let least = match name {
-        "statistical" | "chc" | "chc++" | "nohc" | "hi-z" => 0.4,
+        // Three objects at a time, and after each cut it guesses: in a world of 120 objects that is much.
+        "chc++" => 0.3,
+        "statistical" | "chc" | "nohc" | "hi-z" => 0.4,
         _ => 0.55,
     };
     let share = outcome.culled as f64 / outcome.hidden as f64;
@@ -66,6 +68,7 @@ pub fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
         ("chc++", 2) => {
             &[("d_max", "32"), ("s_max", "1000"), ("virtual_leaf", "16"), ("n_av", "3"), ("b", "7")]
         }
+        ("nohc", 0) => &[("caution", "0")],
         ("nohc", 1) => &[("in_flight", "1"), ("caution", "10")],
         ("nohc", 2) => &[("in_flight", "64"), ("caution", "0")],
         // Times are whatever they are here, so it is not left to them whether it asks.

@@ -44,11 +44,15 @@
 //! - An inner node may be visible, and nothing below it. As published it is then asked about in every
 //!   second frame, and its children in between. With multiqueries it stays open for `n_av` frames;
 //!   with `regroup`, twice as long when that was in vain again, and up to eight times.
+//! - Inner nodes of up to three objects are virtual leaves: hidden, they are one node of a multiquery
+//!   instead of two or three, and visible they are asked about as one. In the city, with two objects for
+//!   three, it would ask a quarter more questions and draw a tenth fewer objects.
 //! - Below a leaf, tight volumes go on to the boxes of its objects; nothing need be built deeper.
 //! - A question that counts ([`Want::Dual`]) is about one box. With a threshold of visible samples,
 //!   volumes are not tight, and multiqueries ask, as ever, whether a single sample is visible; the
 //!   threshold decides about single nodes.
 
+mod dials;
 mod multiquery;
 mod queues;
 mod sampling;
@@ -64,7 +68,7 @@ use super::coherence::{Coherence, Look, Step, Terms};
 use super::front::Front;
 use super::odds::{Class, Kind, Odds};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
-use crate::dial::{self, Dial};
+use crate::dial::Dial;
 use crate::geom::Question;
 use crate::query::{Wait, Want};
 use crate::tree::NodeId;
@@ -77,8 +81,6 @@ use tight::{Limits, TightVolume};
 
 /// Leaves that are hidden with a lesser probability are drawn unasked when they come into view.
 const SELDOM: f32 = 0.35;
-
-const KEEP_RULES: &[(&str, KeepRule)] = &[("measured", KeepRule::Measured), ("analytic", KeepRule::Analytic)];
 
 /// See the module's documentation.
 #[derive(Clone, Debug)]
@@ -141,7 +143,7 @@ impl Default for ChcPlusPlus {
             p_keep: KeepRule::Measured,
             d_max: 3,
             s_max: 1.4,
-            virtual_leaf: 2,
+            virtual_leaf: 3,
             coherence: Coherence::default(),
             queues: Queues::default(),
             volume: TightVolume::default(),
@@ -255,43 +257,11 @@ impl Policy for ChcPlusPlus {
     }
 
     fn dials(&self) -> Vec<Dial> {
-        vec![
-            Dial::new("n_av", self.n_av, "frames from one question about a visible leaf to the next"),
-            Dial::new("b", self.b, "hidden nodes a batch"),
-            Dial::new("batching", self.batching, "ask in batches"),
-            Dial::new("randomised", self.randomised, "spread the first questions of what turned visible"),
-            Dial::new("tight", self.tight, "ask about the boxes of descendants"),
-            Dial::new("multiqueries", self.multiqueries, "ask about several hidden nodes in one question"),
-            Dial::new("regroup", self.regroup, "repeat large multiqueries that fail in groups"),
-            Dial::new(
-                "guess",
-                self.guess,
-                "take as visible what comes into view if such nodes are seldom hidden",
-            ),
-            Dial::choice("p_keep", self.p_keep, KEEP_RULES, "how likely hidden nodes are to stay hidden"),
-            Dial::new("d_max", self.d_max, "levels to which tight volumes go down"),
-            Dial::new("s_max", self.s_max, "surface of a tight volume to that of the node's box, at most"),
-            Dial::new("virtual_leaf", self.virtual_leaf, "objects up to which a node is a leaf, if tight"),
-        ]
+        dials::of(self)
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
-        match key {
-            "n_av" => self.n_av = dial::number(key, value, 0..=1000)?,
-            "b" => self.b = dial::number(key, value, 1..=100_000)?,
-            "batching" => self.batching = dial::number(key, value, false..=true)?,
-            "randomised" => self.randomised = dial::number(key, value, false..=true)?,
-            "tight" => self.tight = dial::number(key, value, false..=true)?,
-            "multiqueries" => self.multiqueries = dial::number(key, value, false..=true)?,
-            "regroup" => self.regroup = dial::number(key, value, false..=true)?,
-            "guess" => self.guess = dial::number(key, value, false..=true)?,
-            "p_keep" => self.p_keep = dial::choice(key, value, KEEP_RULES)?,
-            "d_max" => self.d_max = dial::number(key, value, 0..=32)?,
-            "s_max" => self.s_max = dial::number(key, value, 0.0..=1000.0)?,
-            "virtual_leaf" => self.virtual_leaf = dial::number(key, value, 0..=100_000)?,
-            _ => return Err(dial::unknown(key, value, &self.dials())),
-        }
-        Ok(())
+        dials::set(self, key, value)
     }
 }
 
