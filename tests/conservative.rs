@@ -60,18 +60,23 @@ fn random_worlds() {
 
 #[test]
 fn pathological_worlds() {
-    for &name in policy::NAMES {
+    let kinds = |(n, &name)| Pathology::ALL.map(|kind| (n as u64, name, kind));
+    let runs: Vec<(u64, &str, Pathology)> = policy::NAMES.iter().enumerate().flat_map(kinds).collect();
+    let outcomes = runs.par_iter().map(|&(n, name, kind)| {
         let mut all = Outcome::default();
-        for (i, kind) in Pathology::ALL.into_iter().enumerate() {
-            for variant in 0..4 {
-                let outcome = outcome(name, worlds::pathological(kind), 4 * i as u64 + variant);
-                assert_eq!(outcome.lost, 0, "{name} lost an object in {kind:?}, variant {variant}");
-                all.add(outcome);
-            }
+        // A thousand cubes that each fill the picture take long to draw: one variant a policy.
+        let variants = if kind == Pathology::Coincident { n % 4..n % 4 + 1 } else { 0..4 };
+        for variant in variants {
+            let outcome = outcome(name, worlds::pathological(kind), 4 * kind as u64 + variant);
+            assert_eq!(outcome.lost, 0, "{name} lost an object in {kind:?}, variant {variant}");
+            all.add(outcome);
         }
-        if culls_hidden(name) {
-            assert!(all.culled > 0, "{name} culled nothing that was hidden: {all:?}");
-        }
+        (name, all)
+    });
+    let outcomes: Vec<(&str, Outcome)> = outcomes.collect();
+    for &name in policy::NAMES.iter().filter(|name| culls_hidden(name)) {
+        let culled: usize = outcomes.iter().filter(|run| run.0 == name).map(|run| run.1.culled).sum();
+        assert!(culled > 0, "{name} culled nothing that was hidden");
     }
 }
 
