@@ -76,7 +76,7 @@ mod tests {
         };
         let eye = Vec3::from_array(std::array::from_fn(|_| dice.random_range(-12.0..12.0)));
         let from_world: Mat4 = glam::camera::rh::view::look_at_mat4(eye, Vec3::ONE, Vec3::Y);
-        let samples = if kind % 3 == 0 { 4 } else { 1 };
+        let samples = if kind.is_multiple_of(3) { 4 } else { 1 };
         View::new(from_world, clip, Viewport::new(160, 100)).expect("a view").with_target(
             depth,
             DepthFormat::Depth32Float,

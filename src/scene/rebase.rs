@@ -92,7 +92,7 @@ mod tests {
     fn a_difference_of_origins_that_rounds_is_bounded() {
         let (from, to) = (1.0, -1e-17);
         let [low, high] = translated_coordinate(-1.0, from, to);
-        assert!(low <= 1e-17 && 1e-17 <= high && high < 1e-16, "{low:e} to {high:e}");
+        assert!(low <= 1e-17 && (1e-17..1e-16).contains(&high), "{low:e} to {high:e}");
         let aabb = translated(
             &Aabb::new(Vec3::splat(-1.0), Vec3::splat(-1.0)),
             DVec3::splat(from),
