@@ -235,9 +235,14 @@ impl Policy for ChcPlusPlus {
     }
 
     fn reset(&mut self) {
+        self.cut();
+        self.odds = Odds::default();
+    }
+
+    /// How long nodes keep their state is the same elsewhere.
+    fn cut(&mut self) {
         self.coherence.reset();
         self.spells.clear();
-        self.odds = Odds::default();
     }
 
     fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
