@@ -74,6 +74,11 @@ impl Costs {
         self.last = None;
     }
 
+    /// The same costs, without the last frame: it was not the asker's.
+    pub(crate) fn without_last(self) -> Self {
+        Self { last: None, ..self }
+    }
+
     /// Takes a frame's times. A frame that drew or asked nothing, or took no time, tells nothing.
     pub fn learn(&mut self, stats: &FrameStats) {
         let each = |time: Duration, n: u32| time.as_secs_f32() / n as f32;

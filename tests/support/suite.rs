@@ -27,12 +27,14 @@ pub fn is_default(seed: u64) -> bool {
 
 /// By default a policy culls most of what is hidden inside the frustum, although a fifth of the
 /// world changes every frame and the camera cuts every sixth. Skipped questions about visible leaves
-/// cost the baseline and CHC much of that; rectangles against a pyramid say less than outlines.
+/// cost the baseline and CHC much of that.
 pub fn assert_culls_most(name: &str, outcome: Outcome) {
     let least = match name {
-        // Three objects at a time, and after each cut it guesses: in a world of 120 objects that is much.
-        "chc++" => 0.3,
-        "statistical" | "chc" | "nohc" | "hi-z" => 0.4,
+        // Three objects at a time, and after each cut it guesses: in worlds of a hundred objects that is much.
+        "chc++" => 0.2,
+        // On a screen this small, four texels say little about a rectangle.
+        "hi-z" => 0.25,
+        "statistical" | "chc" | "nohc" => 0.4,
         _ => 0.55,
     };
     let share = outcome.culled as f64 / outcome.hidden as f64;

@@ -153,12 +153,15 @@ impl Policy for Auto {
         self.objects = cx.scene.len();
         let last = cx.costs.last_frame();
         self.drawn = last.map_or(self.drawn, |last| last.drawn);
+        let before = self.running;
         if self.race {
             let mut contest = std::mem::replace(&mut self.contest, Race::new(0));
             self.running = contest.next(last.map(|last| last.total), |way| self.admits(way));
             self.contest = contest;
         }
-        self.ways.get_mut(self.running).begin(cx);
+        // A way must not take another's frame for its own.
+        let costs = if before == self.running { cx.costs } else { cx.costs.without_last() };
+        self.ways.get_mut(self.running).begin(&Context { costs, ..*cx });
     }
 
     fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
