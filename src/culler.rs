@@ -189,7 +189,7 @@ impl<P: Policy> Culler<P> {
         // Drawing that is not told apart from waiting would make questions look dear. So would a few
         // questions of a policy that does not ask about nodes, in a frame that it spends otherwise.
         if draw_time == DrawTime::Unknown {
-            self.costs.lose_frame();
+            self.costs = self.costs.without_last();
         } else {
             self.costs.record(&stats);
             if self.votes.asks {

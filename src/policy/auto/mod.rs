@@ -67,6 +67,7 @@ impl Default for Gate {
 const DUAL_QUERY: usize = 0;
 const HROC: usize = 1;
 const HYBRID: usize = 2;
+const CHC_PLUS_PLUS: usize = 3;
 /// By number: what counters call a way, which says how many frames were its.
 const KEYS: [&str; 5] = ["auto_dual_query", "auto_hroc", "auto_hybrid", "auto_chc_plus_plus", "auto_hi_z"];
 /// Frames after which a gate that is open has made its own trial: nobody disturbs it before.
@@ -82,7 +83,7 @@ impl Ways {
             DUAL_QUERY => &self.dual_query.0,
             HROC => &self.hroc,
             HYBRID => &self.hybrid,
-            3 => &self.chc_plus_plus,
+            CHC_PLUS_PLUS => &self.chc_plus_plus,
             _ => &self.hi_z,
         }
     }
@@ -92,7 +93,7 @@ impl Ways {
             DUAL_QUERY => &mut self.dual_query.0,
             HROC => &mut self.hroc,
             HYBRID => &mut self.hybrid,
-            3 => &mut self.chc_plus_plus,
+            CHC_PLUS_PLUS => &mut self.chc_plus_plus,
             _ => &mut self.hi_z,
         }
     }
@@ -161,9 +162,8 @@ impl Policy for Auto {
         self.drawn = last.map_or(self.drawn, |last| last.drawn);
         let before = self.running;
         if self.race {
-            let mut contest = std::mem::replace(&mut self.contest, Race::new(0));
-            self.running = contest.next(last.map(|last| last.total), |way| self.admits(way));
-            self.contest = contest;
+            let admitted: [bool; KEYS.len()] = std::array::from_fn(|way| self.admits(way));
+            self.running = self.contest.next(last.map(|last| last.total), |way| admitted[way]);
         }
         // A way must not take another's frame for its own.
         let costs = if before == self.running { cx.costs } else { cx.costs.without_last() };

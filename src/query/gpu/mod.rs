@@ -38,6 +38,7 @@
 //! | `questions`, `pack` | what was asked, as the shaders read it |
 //! | `counter`, `bind` | the ways of counting, behind one door |
 //! | `count_fragments`, `count_workgroups`, `gather_blocks`, `ask_natively` | one pass each |
+//! | `rectangles` | the draw of all proxies that passes in fragment shaders share |
 //! | `frame` | passes are recorded, submitted once a wave, and waited for |
 //! | `batch`, `read_back` | buffers of a question pass, from upload to read-back |
 //! | `sweep` | many objects at once, from their boxes to verdicts |
@@ -72,6 +73,7 @@ mod indirect;
 mod pack;
 mod questions;
 mod read_back;
+mod rectangles;
 mod shaders;
 mod sweep;
 mod targets;
