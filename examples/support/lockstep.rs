@@ -2,15 +2,17 @@
 //! the next one comes, and their order changes from frame to frame. What else the machine does
 //! meanwhile then hits all of them alike.
 
+use anyhow::Context;
 use hecs::World;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
-use tercet::Culler;
+use tercet::draw::Detail;
 use tercet::geom::View;
 use tercet::policy::Policy;
 use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::{TreeConfig, TreeStats};
+use tercet::{Culler, Tradeoff};
 
 use super::flags::Flags;
 use super::painter::Painter;
@@ -77,6 +79,20 @@ impl Lane {
         })
     }
 
+    /// The same with another way between speed and accuracy, as finely drawn as that says. The tree is
+    /// the caller's: [`Tradeoff::tree`].
+    pub fn with_tradeoff(mut self, tradeoff: Tradeoff) -> Self {
+        let detail = tradeoff.detail(self.detail());
+        self.eye.tradeoff = tradeoff;
+        self.stage = SoftwareStage::new(detail);
+        self.reference.painter.detail = detail;
+        self
+    }
+
+    fn detail(&self) -> Detail {
+        self.reference.painter.detail
+    }
+
     /// Runs one frame, clocked as in the demos: sync, cull with its draws, adapt. A reference finds
     /// what it is to draw outside the clock.
     fn frame(&mut self, world: &World, view: &View) -> anyhow::Result<()> {
@@ -103,14 +119,24 @@ impl Lane {
 /// Runs all lanes through a scenario and returns what each measured, in their order. `tick` is
 /// called whenever a lane has done a frame.
 ///
-/// With `--oracle`, it looks once a frame, after all lanes, and judges each.
+/// With `--oracle`, it looks once a frame, after all lanes, and judges each: once a level of detail, since
+/// the truth about culling is that of what is drawn. What the level itself changes is found apart.
 pub fn run(
     mut scenario: Scenario,
     flags: &Flags,
     mut lanes: Vec<Lane>,
     mut tick: impl FnMut(),
 ) -> anyhow::Result<Vec<Measured>> {
-    let mut reference = Reference::new(Painter { detail: flags.detail()? }, flags.oracle);
+    let mut references = vec![Reference::new(Painter { detail: flags.detail()? }, flags.oracle)];
+    let mut judges = Vec::with_capacity(lanes.len());
+    for lane in &lanes {
+        let detail = lane.detail();
+        let known = references.iter().position(|reference| reference.painter.detail == detail);
+        judges.push(known.unwrap_or(references.len()));
+        if known.is_none() {
+            references.push(Reference::new(Painter { detail }, flags.oracle));
+        }
+    }
     let mut order: Vec<usize> = (0..lanes.len()).collect();
     let mut dice = ChaCha8Rng::seed_from_u64(flags.seed);
     for frame in 0..flags.frames {
@@ -127,13 +153,8 @@ pub fn run(
             lanes[lane].frame(&scenario.world, &view)?;
             tick();
         }
-        if let Some(first) = lanes.first() {
-            reference.compare(&first.scene, &scenario.world, &view)?;
-        }
-        for Lane { eye, records, .. } in &mut lanes {
-            if let Some(record) = records.last_mut() {
-                reference.judge(&scenario.world, &view, eye, record)?;
-            }
+        if flags.oracle {
+            judge(&mut references, &judges, &mut lanes, &scenario.world, &view)?;
         }
     }
     let setting =
@@ -145,4 +166,29 @@ pub fn run(
             lane.finish(setting)
         })
         .collect())
+}
+
+/// Looks at a frame at each level of detail (the first is what the flags say), and judges each lane
+/// by its own: `judges` has an index for each lane.
+fn judge(
+    references: &mut [Reference],
+    judges: &[usize],
+    lanes: &mut [Lane],
+    world: &World,
+    view: &View,
+) -> anyhow::Result<()> {
+    let Some(first) = lanes.first() else { return Ok(()) };
+    for reference in &mut *references {
+        reference.compare(&first.scene, world, view)?;
+    }
+    let (base, others) = references.split_first().context("the flags say at which level to look")?;
+    let apart: Vec<u64> =
+        std::iter::once(0).chain(others.iter().map(|other| other.differs_from(base))).collect();
+    for (Lane { eye, records, .. }, &judge) in lanes.iter_mut().zip(judges) {
+        if let Some(record) = records.last_mut() {
+            references[judge].judge(world, view, eye, record)?;
+            record.detail_pixels = Some(apart[judge]);
+        }
+    }
+    Ok(())
 }

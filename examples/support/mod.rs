@@ -5,6 +5,7 @@ pub mod canvas;
 pub mod chart;
 pub mod demo;
 pub mod flags;
+pub mod gltf;
 pub mod headless;
 pub mod last_frame;
 pub mod lockstep;

@@ -1,6 +1,6 @@
 //! What a run is compared with: the exact visible set, and what reference policies are to draw.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use hecs::{Entity, World};
 use tercet::Culler;
@@ -8,7 +8,7 @@ use tercet::geom::View;
 use tercet::policy::{Policy, Recording, StopAndWait};
 use tercet::query::QueryBackend;
 use tercet::query::oracle::{Oracle, Truth};
-use tercet::query::software::SoftwareQueries;
+use tercet::query::software::{SoftwareQueries, VisibilityImage};
 use tercet::scene::{ObjectId, ObjectRef, Scene};
 
 use super::painter::Painter;
@@ -88,7 +88,8 @@ impl Reference {
     ) -> anyhow::Result<()> {
         let (true, Some(truth)) = (self.compare, &self.truth) else { return Ok(()) };
         let drawn: HashSet<Entity> = eye.visible().iter().map(|object| object.entity()).collect();
-        let lost = self.seen.iter().filter(|entity| !drawn.contains(entity)).count();
+        let lost: Vec<Entity> =
+            self.seen.iter().copied().filter(|entity| !drawn.contains(entity)).collect();
         self.queries.begin(view)?;
         self.queries.draw(|pass| {
             self.painter.draw(world, view, pass, eye.visible());
@@ -96,9 +97,36 @@ impl Reference {
         self.queries.end()?;
         record.exact_visible = Some(truth.exact.len() as u32);
         record.box_visible = Some(truth.box_visible.len() as u32);
-        record.false_culls = Some(lost as u32);
+        record.false_culls = Some(lost.len() as u32);
+        record.lost = self.samples_of(lost);
         record.wrong_pixels = Some(self.oracle.wrong_pixels(&self.queries));
         Ok(())
+    }
+
+    /// How many samples of the frame show another object here than there: the two draw at different
+    /// levels of detail.
+    pub fn differs_from(&self, other: &Self) -> u64 {
+        let owners = |reference: &Self, pixel: usize| {
+            let call = reference.oracle.image().call[pixel];
+            (call != VisibilityImage::NOTHING).then(|| reference.oracle.owner(call).entity())
+        };
+        let pixels = self.oracle.image().call.len();
+        (0..pixels).filter(|&pixel| owners(self, pixel) != owners(other, pixel)).count() as u64
+    }
+
+    /// Of how many samples each of these is the nearest. It may be none: at equal depths, another
+    /// object counts as the nearest.
+    fn samples_of(&self, entities: Vec<Entity>) -> Vec<(Entity, u32)> {
+        let mut samples: HashMap<Entity, u32> = entities.iter().map(|&entity| (entity, 0)).collect();
+        if !samples.is_empty() {
+            let nearest = self.oracle.image().call.iter().filter(|&&call| call != VisibilityImage::NOTHING);
+            for &call in nearest {
+                if let Some(count) = samples.get_mut(&self.oracle.owner(call).entity()) {
+                    *count += 1;
+                }
+            }
+        }
+        entities.into_iter().map(|entity| (entity, samples[&entity])).collect()
     }
 
     fn find_truth(&mut self, scene: &Scene, world: &World, view: &View) -> anyhow::Result<()> {

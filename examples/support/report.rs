@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::Context;
-use hecs::World;
+use hecs::{Entity, World};
 use serde::Serialize;
 use tercet::Counter;
 use tercet::draw::Drawable;
@@ -62,6 +62,12 @@ pub struct FrameRecord {
     /// What the policy counted itself; one column each.
     #[serde(skip)]
     pub counters: Vec<Counter>,
+    /// Those of `false_culls`, and of how many samples of the finished frame each is the nearest.
+    #[serde(skip)]
+    pub lost: Vec<(Entity, u32)>,
+    /// Samples that show another object only because of the level of detail, where that is measured.
+    #[serde(skip)]
+    pub detail_pixels: Option<u64>,
 }
 
 /// What does not change from frame to frame.

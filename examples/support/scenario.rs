@@ -27,6 +27,7 @@ pub struct Scenario {
 }
 
 /// The camera's way.
+#[derive(Clone, Debug)]
 pub enum Flight {
     /// Smoothly through some points.
     Path(CameraPath),

@@ -6,21 +6,16 @@
 //! cargo run --release --example view -- --help
 //! ```
 
-mod camera_file;
 #[path = "../support/mod.rs"]
 pub mod support;
-mod walk;
 
 use std::path::PathBuf;
 
-use anyhow::{Context, ensure};
 use clap::Args;
 use support::demo;
 use support::flags::Flags;
+use support::gltf::GltfScene;
 use support::program::Program;
-use support::scenario::{Flight, Scenario};
-use tercet::geom::Aabb;
-use tercet::scene::import;
 
 /// What the command line says beside the shared flags.
 #[derive(Args)]
@@ -53,37 +48,8 @@ const PROGRAM: Program = Program {
 
 fn main() -> anyhow::Result<()> {
     let (mut flags, scenery) = Flags::parse_for::<Scenery>(&PROGRAM);
-    let imported = import::load(&scenery.file)
-        .with_context(|| format!("{} is to be a .glb or .gltf file", scenery.file.display()))?;
-    #[cfg(feature = "lod")]
-    let imported = with_levels(imported, &flags)?;
-    println!("{}", imported.report);
-    let model = &imported.model;
-    ensure!(!model.objects.is_empty(), "{}: there is nothing to see in it", scenery.file.display());
-
-    let flight = match &scenery.camera {
-        Some(file) => Flight::Poses(camera_file::read(file)?),
-        None => {
-            let boxes: Vec<Aabb> = model.objects.iter().map(|o| o.bounds).collect();
-            Flight::Path(walk::through(&model.bounds, &boxes))
-        }
-    };
-    if let Flight::Poses(poses) = &flight {
-        let flown = flags.flight_end()? * poses.len() as f32;
-        flags.frames = (flown.ceil() as u32).max(1);
-    }
-    let (name, near) = (model.name.clone(), walk::near(&model.bounds));
-    let mut world = hecs::World::new();
-    imported.spawn(&mut world);
-    demo::run(&flags, Scenario { name, world, swarm: None, flight, near })
-}
-
-/// A file says nothing of levels of detail: they are made here, unless nobody wants them.
-#[cfg(feature = "lod")]
-fn with_levels(mut imported: import::Imported, flags: &Flags) -> anyhow::Result<import::Imported> {
-    const LEAST_TRIANGLES: usize = 64;
-    if !flags.full_detail {
-        imported.generate_levels(LEAST_TRIANGLES)?;
-    }
-    Ok(imported)
+    let scene = GltfScene::load(&flags, &scenery.file, scenery.camera.as_deref())?;
+    println!("{}", scene.report());
+    flags.frames = scene.frames(&flags)?;
+    demo::run(&flags, scene.scenario())
 }
