@@ -88,8 +88,7 @@ impl Reference {
     ) -> anyhow::Result<()> {
         let (true, Some(truth)) = (self.compare, &self.truth) else { return Ok(()) };
         let drawn: HashSet<Entity> = eye.visible().iter().map(|object| object.entity()).collect();
-        let lost: Vec<Entity> =
-            self.seen.iter().copied().filter(|entity| !drawn.contains(entity)).collect();
+        let lost: Vec<Entity> = self.seen.iter().copied().filter(|entity| !drawn.contains(entity)).collect();
         self.queries.begin(view)?;
         self.queries.draw(|pass| {
             self.painter.draw(world, view, pass, eye.visible());

@@ -27,8 +27,8 @@ impl GltfScene {
     /// # Errors
     /// When a file cannot be read, or there is nothing to see.
     pub fn load(flags: &Flags, file: &Path, camera: Option<&Path>) -> anyhow::Result<Self> {
-        let imported =
-            import::load(file).with_context(|| format!("{} is to be a .glb or .gltf file", file.display()))?;
+        let imported = import::load(file)
+            .with_context(|| format!("{} is to be a .glb or .gltf file", file.display()))?;
         let imported = with_levels(imported, flags)?;
         let model = &imported.model;
         ensure!(!model.objects.is_empty(), "{}: there is nothing to see in it", file.display());
