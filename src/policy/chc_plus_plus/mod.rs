@@ -348,7 +348,7 @@ impl ChcPlusPlus {
         let proxies = &mut self.queues.proxies;
         let first = proxies.len();
         for aabb in self.volume.of(cx.tree, node, Limits { d_max, s_max: self.s_max }) {
-            match Question::new(&aabb, cx.view) {
+            match cx.question_about(node, &aabb) {
                 Question::Outside => {}
                 Question::Visible => {
                     proxies.truncate(first);
@@ -360,7 +360,7 @@ impl ChcPlusPlus {
         if proxies.len() > first {
             return Boxes::Ask(first..proxies.len());
         }
-        if Question::new(&cx.tree.query_box(node), cx.view) != Question::Outside {
+        if cx.question(node) != Question::Outside {
             // Whoever asks about the node's fate asks about its one box.
             self.coherence.found_hidden(cx, node);
         }

@@ -267,7 +267,7 @@ impl Hierarchy {
             self.open(cx, front, Record::default());
             return None;
         }
-        let proxy = match Question::new(&cx.tree.query_box(front.node), cx.view) {
+        let proxy = match cx.question(front.node) {
             Question::Outside => return None,
             Question::Visible => {
                 self.found_visible(cx, front, Class::Partial);
