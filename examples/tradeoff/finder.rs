@@ -4,7 +4,7 @@
 //! 2. From these, times are taken to multiply and errors to add up. The combinations that then are the
 //!    fastest within the allowed error run, a few of them: the Pareto front of all combinations is folded
 //!    together dial by dial.
-//! 3. From the fastest found so far, one dial at a time goes through all its values, the others as they
+//! 3. From the fastest few found so far, one dial at a time goes through all its values, the others as they
 //!    are, until a round through all dials gains nothing. Where dials get in each other's way, this mends
 //!    what the guess got wrong.
 //! 4. Step 2 again from there, and step 3 again if that gained something.
@@ -33,7 +33,11 @@ const LEAST_GAIN: f64 = 0.01;
 /// How many guesses are run.
 const GUESSES: usize = 12;
 
-/// Of so many partial combinations, the most promising are kept.
+/// From how many of the best guesses the search goes on: dials that get in each other's way leave
+/// more than one place from which no single one of them gains.
+const STARTS: usize = 3;
+
+/// Of more partial combinations, only the unbeaten ones are kept.
 const MOST_PARTIAL: usize = 4096;
 
 /// What was run, and what came out.
@@ -59,6 +63,9 @@ impl<M: FnMut(&[Point]) -> anyhow::Result<Vec<Score>>> Finder<M> {
     pub fn find(&mut self) -> anyhow::Result<Option<Point>> {
         let base = vec![0; self.lengths.len()];
         self.run_around(&base)?;
+        for start in self.ranking().into_iter().take(STARTS) {
+            self.descend(start)?;
+        }
         let Some(mut best) = self.fastest(self.scores.keys()) else { return Ok(None) };
         loop {
             best = self.descend(best)?;
@@ -165,17 +172,22 @@ impl<M: FnMut(&[Point]) -> anyhow::Result<Vec<Score>>> Finder<M> {
             let longer = partial
                 .iter()
                 .flat_map(|(point, score)| values.iter().map(move |value| with(point, score, value)));
-            partial = unbeaten(longer.collect());
+            partial = promising(longer.collect());
         }
-        let allowed = partial.into_iter().filter(|(_, score)| score.error <= self.allowed);
-        allowed.take(GUESSES).map(|(point, _)| point).collect()
+        let is_new = |point: &Point| !self.scores.contains_key(point);
+        partial.retain(|(point, score)| score.error <= self.allowed && is_new(point));
+        partial.sort_by(|a, b| a.1.time.total_cmp(&b.1.time).then_with(|| a.0.cmp(&b.0)));
+        partial.into_iter().take(GUESSES).map(|(point, _)| point).collect()
     }
 }
 
-/// Those that nothing beats in time and error, fastest first.
-fn unbeaten(all: Vec<(Point, Score)>) -> Vec<(Point, Score)> {
+/// All of them, or only those that nothing beats in time and error if they are too many.
+fn promising(all: Vec<(Point, Score)>) -> Vec<(Point, Score)> {
+    if all.len() <= MOST_PARTIAL {
+        return all;
+    }
     let figures: Vec<_> = all.iter().map(|(_, score)| (score.time, score.error)).collect();
-    front(&figures).into_iter().take(MOST_PARTIAL).map(|n| all[n].clone()).collect()
+    front(&figures).into_iter().map(|n| all[n].clone()).collect()
 }
 
 #[cfg(test)]
@@ -215,17 +227,17 @@ mod tests {
         }
 
         fn score(&self, point: &Point) -> Score {
-            let mut parts = self.parts.clone();
+            // Of each part: what is left if all save as they do alone, and if only the best one does.
+            let mut left = vec![(1.0, 1.0); self.parts.len()];
             let mut right = 1.0;
             for (dial, &value) in self.dials.iter().zip(point) {
-                let (part, left, error) = dial[value];
-                // Half of what it would save alone, where another saved before.
-                let crowded = parts[part] < self.parts[part];
-                parts[part] *= if crowded { 0.5 + 0.5 * left } else { left };
+                let (part, alone, error) = dial[value];
+                left[part] = (left[part].0 * alone, f64::min(left[part].1, alone));
                 right *= 1.0 - error;
             }
+            let time = |(part, (all, best)): (&f64, &(f64, f64))| part * f64::sqrt(all * best);
             let total: f64 = self.parts.iter().sum();
-            Score { time: parts.iter().sum::<f64>() / total, error: 1.0 - right }
+            Score { time: self.parts.iter().zip(&left).map(time).sum::<f64>() / total, error: 1.0 - right }
         }
     }
 
@@ -266,6 +278,7 @@ mod tests {
                 all += lengths.iter().product::<usize>();
             }
         }
+        println!("it ran {looked} of {all}");
         assert!(looked * 4 < all, "it ran {looked} of {all} combinations");
     }
 
