@@ -90,7 +90,8 @@ fn draw(path: &Path, flags: &Flags, outcomes: &[Outcome], plot: &Plot) -> anyhow
     canvas::save(path, (WIDTH, ABOVE + PANEL_HEIGHT * rows as u32), |sheet| {
         let below = canvas::heading(sheet, plot.title, &subtitle, &keys)?;
         for (cell, outcome) in below.split_evenly((rows, columns)).iter().zip(outcomes) {
-            let title = format!("{}: the base takes {:.1} ms", outcome.world, outcome.base().median_ms);
+            let base_ms = outcome.base().median_ms;
+            let title = format!("{}: {} frames; 1 is {base_ms:.1} ms", outcome.world, outcome.frames);
             let area = panel(cell, &title)?;
             let values: Vec<f64> = outcome.rows.iter().map(|row| (plot.value)(&row.figures)).collect();
             if let Some(range) = log_range(&values).filter(|_| plot.title == ERROR.title) {

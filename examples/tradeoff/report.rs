@@ -163,7 +163,8 @@ pub fn found(found: &Found) -> String {
     };
     let mut text = format!(
         "\nThe fastest setting found with at most {allowed} wrong samples in the mean frame: `{}`, in {:.3} of \
-         the base's time with {} wrong. The search looked at {looked} of {} combinations.\n",
+         the base's time with {} wrong. The search looked at {looked} of {} combinations, and ran the best of them \
+         once more, side by side.\n",
         setting.name,
         figures.time_ratio,
         share(figures.error()),
@@ -172,8 +173,8 @@ pub fn found(found: &Found) -> String {
     if let Some((best, of_best)) = &found.best_of_all {
         let _ = writeln!(
             text,
-            "Of all combinations, which ran, the fastest is `{}`, in {:.3}: what was found takes {:.1} % of its \
-             time.",
+            "All combinations ran. The fastest of them is `{}`, in {:.3}: what the search found takes {:.1} % of \
+             its time.",
             best.name,
             of_best.time_ratio,
             100.0 * figures.time_ratio / of_best.time_ratio,

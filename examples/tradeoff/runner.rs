@@ -99,6 +99,11 @@ impl<'a> Runner<'a> {
         let (base_ms, noise) = base_of(&measured[0], &measured[1]);
         let samples = f64::from(flags.size.0) * f64::from(flags.size.1);
         let world = self.world.key();
+        let figures = |setting: &Setting, lane| {
+            let figures = Figures::new(lane, (&base_ms, noise), samples);
+            // By definition: what one copy takes more than both is noise.
+            if *setting == self.base { Figures { time_ratio: 1.0, ..figures } } else { figures }
+        };
         let has_base = self.resume.get(&world, round, &self.base.name).is_some();
         let lanes = all.zip(&measured).skip(if has_base { COPIES } else { COPIES - 1 });
         Ok(lanes
@@ -106,12 +111,64 @@ impl<'a> Runner<'a> {
                 world: world.clone(),
                 round,
                 setting: setting.name.clone(),
-                figures: Figures::new(lane, (&base_ms, noise), samples),
+                figures: figures(setting, lane),
             })
             .collect())
     }
 
     fn missing(&self, setting: &Setting) -> anyhow::Error {
         anyhow::anyhow!("{}: {} was run, and left no figures", self.world.key(), setting.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use tercet::Tradeoff;
+
+    use super::*;
+    use crate::resume::Identity;
+    use crate::worlds::Made;
+
+    fn setting(key: &str, value: &str) -> Setting {
+        let mut tradeoff = Tradeoff::EXACT;
+        tradeoff.set(key, value).expect("it takes that");
+        Setting::new(tradeoff)
+    }
+
+    /// A few frames of a small plant: what is finished is not run again, and each kind of error is seen
+    /// where it belongs.
+    #[test]
+    fn every_setting_runs_once_and_its_errors_are_told_apart() {
+        let line = "tradeoff --scale 0.05 --objects 60 --frames 4 --size 160x90 --set flight_end=0.4";
+        let flags = Flags::try_parse_from(line.split(' ')).expect("flags");
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("run.jsonl");
+        let (world, bar) = (World::Made(Made::MovingBunnies), ProgressBar::hidden());
+        let exact = Setting::new(Tradeoff::EXACT);
+        let all = [exact.clone(), setting("visible_pixels", "400"), setting("max_error_px", "16")];
+        let mut measure = |settings: &[Setting], round| {
+            let mut resume = Resume::open(&path, &Identity::new(), false).expect("a file");
+            let mut runner =
+                Runner::new(&flags, &world, exact.clone(), &mut resume, &bar).expect("its frames");
+            let figures = runner.measure(settings, round).expect("it runs");
+            (figures, runner.ran)
+        };
+        let (first, ran) = measure(&all[..2], 0);
+        assert_eq!(ran, 2);
+        let (figures, ran) = measure(&all, 0);
+        assert_eq!((&figures[..2], ran), (&first[..], 1), "only the third is new");
+        assert_eq!(measure(&all, 0), (figures.clone(), 0));
+        assert_eq!(measure(&all[2..], 1).1, 2, "a check runs anew, with a base of its own");
+
+        let [exact, blind, coarse] = &figures[..] else { panic!("three were asked for") };
+        assert_eq!((exact.time_ratio, exact.error(), exact.lost, exact.longest_run), (1.0, 0.0, 0, 0));
+        assert!(exact.exact > 0.0 && exact.drawn - exact.exact == exact.extra, "{exact:?}");
+        assert!(blind.wrong_mean > 0.0 && blind.wrong_worst >= blind.wrong_mean, "{blind:?}");
+        assert!(blind.wrong_worst <= 1.0 && blind.detail_mean == 0.0, "{blind:?}");
+        assert!((1..=400).contains(&blind.largest_lost), "no box that shows more is culled: {blind:?}");
+        assert!((1..=4).contains(&blind.longest_run) && blind.lost > 0, "{blind:?}");
+        assert!(coarse.wrong_mean == 0.0 && coarse.lost == 0, "{coarse:?}");
+        assert!(coarse.detail_mean > 0.0 && coarse.triangles < exact.triangles, "{coarse:?}");
     }
 }

@@ -105,16 +105,18 @@ impl Search {
         let mut settings = checked.collect::<anyhow::Result<Vec<_>>>()?;
         let own = settings.len();
         settings.extend(fastest(combined, allowed));
-        // Noise has made the fastest look faster than it is, and which it is may be noise, too.
+        // Noise has made the fastest look faster than they are, and which they are may be noise, too.
         let figures = runner.measure(&settings, 1)?;
         let all: Vec<(Setting, Figures)> = settings.into_iter().zip(figures).collect();
-        let within = |(_, figures): &&(Setting, Figures)| figures.error() <= allowed;
-        let best = all[..own].iter().filter(within).min_by(|a, b| a.1.time_ratio.total_cmp(&b.1.time_ratio));
+        let best = |checked: &[(Setting, Figures)]| {
+            let within = checked.iter().filter(|(_, figures)| figures.error() <= allowed);
+            within.min_by(|a, b| a.1.time_ratio.total_cmp(&b.1.time_ratio)).cloned()
+        };
         Ok(Found {
             allowed,
             looked: (looked, lengths.iter().product()),
-            best: best.cloned(),
-            best_of_all: all.get(own).cloned(),
+            best: best(&all[..own]),
+            best_of_all: if combined.is_empty() { None } else { best(&all) },
         })
     }
 }
@@ -131,8 +133,9 @@ fn score(figures: &Figures) -> Score {
     Score { time: figures.time_ratio, error: figures.error() }
 }
 
-/// The fastest row within an allowed error.
-fn fastest(rows: &[Row], allowed: f64) -> Option<Setting> {
-    let within = rows.iter().filter(|row| row.figures.error() <= allowed);
-    within.min_by(|a, b| a.figures.time_ratio.total_cmp(&b.figures.time_ratio)).map(|row| row.setting.clone())
+/// The fastest rows within an allowed error.
+fn fastest(rows: &[Row], allowed: f64) -> impl Iterator<Item = Setting> {
+    let mut within: Vec<&Row> = rows.iter().filter(|row| row.figures.error() <= allowed).collect();
+    within.sort_by(|a, b| a.figures.time_ratio.total_cmp(&b.figures.time_ratio));
+    within.into_iter().take(CHECKED).map(|row| row.setting.clone())
 }
