@@ -2,9 +2,8 @@
 //!
 //! 1. Every value of every dial runs alone.
 //! 2. From these, times are taken to multiply and errors to add up. The combinations that then are the
-//!    fastest within the allowed error run, a few of them: the Pareto front of all combinations is folded
-//!    together dial by dial.
-//! 3. From the fastest few found so far, one dial at a time goes through all its values, the others as they
+//!    fastest within the allowed error run, a few of them.
+//! 3. From the fastest found so far, one dial at a time goes through all its values, the others as they
 //!    are, until a round through all dials gains nothing. Where dials get in each other's way, this mends
 //!    what the guess got wrong.
 //! 4. Step 2 again from there, and step 3 again if that gained something.
@@ -33,10 +32,6 @@ const LEAST_GAIN: f64 = 0.01;
 /// How many guesses are run.
 const GUESSES: usize = 12;
 
-/// From how many of the best guesses the search goes on: dials that get in each other's way leave
-/// more than one place from which no single one of them gains.
-const STARTS: usize = 3;
-
 /// Of more partial combinations, only the unbeaten ones are kept.
 const MOST_PARTIAL: usize = 4096;
 
@@ -63,9 +58,6 @@ impl<M: FnMut(&[Point]) -> anyhow::Result<Vec<Score>>> Finder<M> {
     pub fn find(&mut self) -> anyhow::Result<Option<Point>> {
         let base = vec![0; self.lengths.len()];
         self.run_around(&base)?;
-        for start in self.ranking().into_iter().take(STARTS) {
-            self.descend(start)?;
-        }
         let Some(mut best) = self.fastest(self.scores.keys()) else { return Ok(None) };
         loop {
             best = self.descend(best)?;
@@ -278,8 +270,7 @@ mod tests {
                 all += lengths.iter().product::<usize>();
             }
         }
-        println!("it ran {looked} of {all}");
-        assert!(looked * 4 < all, "it ran {looked} of {all} combinations");
+        assert!(looked * 10 < all, "it ran {looked} of {all} combinations");
     }
 
     #[test]
