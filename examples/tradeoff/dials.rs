@@ -68,6 +68,11 @@ impl Setting {
         let words: Vec<String> = dials.map(|dial| format!("{}={}", dial.key, dial.value)).collect();
         Self { tradeoff, name: if words.is_empty() { "exact".to_owned() } else { words.join(" ") } }
     }
+
+    /// How many dials differ from the exact ones.
+    pub fn turned(&self) -> usize {
+        self.name.matches('=').count()
+    }
 }
 
 impl Space {

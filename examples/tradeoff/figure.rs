@@ -4,13 +4,12 @@
 use std::ops::Range;
 use std::path::Path;
 
-use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 
 use crate::dials;
 use crate::figures::Figures;
 use crate::outcome::{BASE, COMBINED, Outcome, PRESET, Row};
-use crate::support::axis::{nice_top, plain};
+use crate::support::axis::plain;
 use crate::support::canvas::{self, INK, Key, Sheet, px, text};
 use crate::support::chart::panel;
 use crate::support::flags::Flags;
@@ -56,7 +55,7 @@ struct Plot {
 const ERROR: Plot = Plot {
     title: "Wrong samples against time",
     unit: "wrong samples, percent of a mean frame",
-    note: "points on the lower border: none at all",
+    note: "on the lower border: none at all; on the right one: slower still",
     value: |figures| 100.0 * figures.error(),
     front: |outcome| &outcome.error_front,
 };
@@ -64,7 +63,7 @@ const ERROR: Plot = Plot {
 const DRAWS: Plot = Plot {
     title: "Objects drawn in vain against time",
     unit: "drawn beyond the exact set, percent of it",
-    note: "an object counts that is drawn and owns no sample",
+    note: "an object counts that is drawn and owns no sample; on the right border: slower still",
     value: |figures| 100.0 * figures.extra_ratio(),
     front: |outcome| &outcome.draws_front,
 };
@@ -94,38 +93,21 @@ fn draw(path: &Path, flags: &Flags, outcomes: &[Outcome], plot: &Plot) -> anyhow
             let title = format!("{}: {} frames; 1 is {base_ms:.1} ms", outcome.world, outcome.frames);
             let area = panel(cell, &title)?;
             let values: Vec<f64> = outcome.rows.iter().map(|row| (plot.value)(&row.figures)).collect();
-            if let Some(range) = log_range(&values).filter(|_| plot.title == ERROR.title) {
-                let sparse = |y: &f64| format!("{}", (y * 1e9).round() / 1e9);
-                scatter(&area, outcome, plot, range.clone(), range.log_scale(), &sparse)?;
-            } else {
-                let range = 0.0..nice_top(1.05 * values.iter().copied().fold(0.0, f64::max));
-                scatter(&area, outcome, plot, range.clone(), range, &|y| format!("{y:.0}"))?;
-            }
+            scatter(&area, outcome, plot, log_range(&values))?;
         }
         Ok(())
     })
 }
 
-/// What a logarithmic axis must hold: whole decades; None if there is nothing but zeros.
-fn log_range(values: &[f64]) -> Option<Range<f64>> {
+/// What a logarithmic axis must hold, and half a decade below, so that little is told from nothing.
+fn log_range(values: &[f64]) -> Range<f64> {
     let some = || values.iter().copied().filter(|&y| y >= LEAST);
-    let least = some().fold(f64::INFINITY, f64::min);
-    let most = some().fold(0.0, f64::max);
-    // A decade below the least, so that what is wrong is told from what is not.
-    (most > 0.0).then(|| 10f64.powf(least.log10().floor() - 0.5)..10f64.powf(most.log10() + 0.2))
+    let least = some().fold(f64::INFINITY, f64::min).min(1.0);
+    let most = some().fold(0.0, f64::max).max(10.0 * least);
+    10f64.powf(least.log10().floor() - 0.5)..10f64.powf(most.log10() + 0.2)
 }
 
-fn scatter<Y>(
-    area: &Sheet<'_>,
-    outcome: &Outcome,
-    plot: &Plot,
-    range: Range<f64>,
-    coordinate: impl AsRangedCoord<CoordDescType = Y, Value = f64>,
-    label: &dyn Fn(&f64) -> String,
-) -> anyhow::Result<()>
-where
-    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
-{
+fn scatter(area: &Sheet<'_>, outcome: &Outcome, plot: &Plot, range: Range<f64>) -> anyhow::Result<()> {
     let times = || outcome.rows.iter().map(|row| row.figures.time_ratio.min(SLOWEST));
     let (fastest, slowest) = (times().fold(1.0, f64::min), times().fold(1.0, f64::max));
     let margin = 0.05 * (slowest - fastest).max(0.2);
@@ -134,12 +116,12 @@ where
         .margin_top(px(6))
         .x_label_area_size(px(44))
         .y_label_area_size(px(76))
-        .build_cartesian_2d(fastest - margin..slowest + 3.0 * margin, coordinate)?;
+        .build_cartesian_2d(fastest - margin..slowest + 3.0 * margin, range.clone().log_scale())?;
     plain(&mut chart.configure_mesh())
         .x_desc("time over the base's")
         .y_desc(plot.unit)
         .x_label_formatter(&|x| format!("{x:.2}"))
-        .y_label_formatter(label)
+        .y_label_formatter(&|y| format!("{}", (y * 1e9).round() / 1e9))
         .draw()?;
     let point = |row: &Row| {
         let y = (plot.value)(&row.figures).clamp(range.start, range.end);
@@ -154,23 +136,31 @@ where
     // The base last: it is what all others are compared with.
     let rows = outcome.rows.iter().rev();
     chart.draw_series(rows.map(|row| Circle::new(point(row), px(4), color(row.group).filled())))?;
-    let mut taken: Vec<(i32, i32)> = Vec::new();
+    let mut taken: Option<(i32, i32)> = None;
     for row in front {
         let (x, y) = chart.backend_coord(&point(row));
         let (x0, y0) = area.get_base_pixel();
-        let at = (x - x0 + px(6), y - y0 - px(14));
-        let style = text(12, INK);
-        let (wide, high) = area.estimate_text_size(&row.label(), &style)?;
+        let (text, style) = (brief(&row.label()), text(12, INK));
+        let (wide, high) = area.estimate_text_size(&text, &style)?;
         let (wide, high) = (wide as i32, high as i32 + px(2));
         let (room, _) = area.dim_in_pixel();
-        let at = (at.0.min(room as i32 - wide - px(4)), at.1);
-        let is_free = |&(x, y): &(i32, i32)| (y - at.1).abs() > high || x < at.0 || x - at.0 > wide + px(260);
-        if taken.iter().all(is_free) {
-            area.draw_text(&row.label(), &style, at)?;
-            taken.push((at.0 + wide, at.1));
+        let at = ((x - x0 + px(6)).min(room as i32 - wide - px(4)), y - y0 - px(14));
+        // The curve falls: what came before ends to the left, or above.
+        if taken.is_none_or(|(end, above)| at.0 > end || at.1 - above > high) {
+            area.draw_text(&text, &style, at)?;
+            taken = Some((at.0 + wide, at.1));
         }
     }
     Ok(())
+}
+
+/// A setting's first two dials, and how many more there are.
+fn brief(label: &str) -> String {
+    let words: Vec<&str> = label.split(' ').collect();
+    match words.len() {
+        0..=3 => label.to_owned(),
+        dials => format!("{} and {} more", words[..2].join(" "), dials - 2),
+    }
 }
 
 /// The groups, in the order of the legend.

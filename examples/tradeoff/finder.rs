@@ -7,6 +7,7 @@
 //!    are, until a round through all dials gains nothing. Where dials get in each other's way, this mends
 //!    what the guess got wrong.
 //! 4. Step 2 again from there, and step 3 again if that gained something.
+//! 5. Dials that turn out to gain nothing are put back.
 //!
 //! Whatever is within the allowed error was measured to be.
 
@@ -27,7 +28,7 @@ pub struct Score {
 }
 
 /// A gain below this is taken for noise.
-const LEAST_GAIN: f64 = 0.01;
+pub const LEAST_GAIN: f64 = 0.01;
 
 /// How many guesses are run.
 const GUESSES: usize = 12;
@@ -64,7 +65,7 @@ impl<M: FnMut(&[Point]) -> anyhow::Result<Vec<Score>>> Finder<M> {
             self.run_around(&best)?;
             match self.fastest(self.scores.keys()) {
                 Some(other) if self.gains(&other, &best) => best = other,
-                _ => return Ok(Some(best)),
+                _ => return self.simplify(best).map(Some),
             }
         }
     }
@@ -93,6 +94,21 @@ impl<M: FnMut(&[Point]) -> anyhow::Result<Vec<Score>>> Finder<M> {
                 return Ok(best);
             }
         }
+    }
+
+    /// Puts dials back that gain nothing.
+    fn simplify(&mut self, best: Point) -> anyhow::Result<Point> {
+        let most = self.scores[&best].time * (1.0 + LEAST_GAIN);
+        let mut simple = best;
+        for dial in 0..self.lengths.len() {
+            let mut without = simple.clone();
+            without[dial] = 0;
+            self.run(vec![without.clone()])?;
+            if self.is_allowed(&without) && self.scores[&without].time <= most {
+                simple = without;
+            }
+        }
+        Ok(simple)
     }
 
     fn gains(&self, point: &Point, over: &Point) -> bool {
@@ -283,6 +299,17 @@ mod tests {
             Ok(points.iter().map(score).collect())
         };
         assert_eq!(Finder::new(&[3, 2], 0.1, mends).find().expect("a model"), Some(vec![1, 0]));
+    }
+
+    #[test]
+    fn a_dial_that_gains_nothing_is_left_as_it_was() {
+        // The second dial only helps while the first has not been turned.
+        let measure = |points: &[Point]| {
+            let time =
+                |p: &Point| if p[0] == 1 { 0.5 - 0.001 * p[1] as f64 } else { 1.0 - 0.3 * p[1] as f64 };
+            Ok(points.iter().map(|p| Score { time: time(p), error: 0.0 }).collect())
+        };
+        assert_eq!(Finder::new(&[2, 2], 0.0, measure).find().expect("a model"), Some(vec![1, 0]));
     }
 
     #[test]

@@ -165,8 +165,9 @@ mod tests {
         drop(resume);
         let whole = fs::read(&path).expect("it was written");
         // Every seventh byte, and those around the end of a line.
-        let is_tried =
-            |cut: &usize| cut % 7 == 0 || whole[cut.saturating_sub(1)..].iter().take(2).any(|&b| b == b'\n');
+        let is_tried = |cut: &usize| {
+            cut.is_multiple_of(7) || whole[cut.saturating_sub(1)..].iter().take(2).any(|&b| b == b'\n')
+        };
         for cut in (0..=whole.len()).filter(is_tried) {
             fs::write(&path, &whole[..cut]).expect("it can be written");
             let breaks = whole[..cut].iter().filter(|&&byte| byte == b'\n').count();

@@ -147,7 +147,7 @@ mod tests {
         let (world, bar) = (World::Made(Made::MovingBunnies), ProgressBar::hidden());
         let exact = Setting::new(Tradeoff::EXACT);
         let all = [exact.clone(), setting("visible_pixels", "400"), setting("max_error_px", "16")];
-        let mut measure = |settings: &[Setting], round| {
+        let measure = |settings: &[Setting], round| {
             let mut resume = Resume::open(&path, &Identity::new(), false).expect("a file");
             let mut runner =
                 Runner::new(&flags, &world, exact.clone(), &mut resume, &bar).expect("its frames");

@@ -4,7 +4,7 @@ use tercet::PRESETS;
 
 use crate::dials::{self, Setting, Space};
 use crate::figures::Figures;
-use crate::finder::{Finder, Point, Score};
+use crate::finder::{Finder, LEAST_GAIN, Point, Score};
 use crate::outcome::{Found, Outcome, PRESET, Row, group};
 use crate::runner::Runner;
 
@@ -99,9 +99,10 @@ impl Search {
             Ok(scores)
         };
         let mut finder = Finder::new(&lengths, allowed, measure);
-        finder.find()?;
+        let found = finder.find()?;
         let (ranking, looked) = (finder.ranking(), finder.scores.len());
-        let checked = ranking.iter().take(CHECKED).map(|point| space.setting(point));
+        let others = ranking.into_iter().filter(|point| found.as_ref() != Some(point)).take(CHECKED - 1);
+        let checked = found.clone().into_iter().chain(others).map(|point| space.setting(&point));
         let mut settings = checked.collect::<anyhow::Result<Vec<_>>>()?;
         let own = settings.len();
         settings.extend(fastest(combined, allowed));
@@ -109,8 +110,10 @@ impl Search {
         let figures = runner.measure(&settings, 1)?;
         let all: Vec<(Setting, Figures)> = settings.into_iter().zip(figures).collect();
         let best = |checked: &[(Setting, Figures)]| {
-            let within = checked.iter().filter(|(_, figures)| figures.error() <= allowed);
-            within.min_by(|a, b| a.1.time_ratio.total_cmp(&b.1.time_ratio)).cloned()
+            let within = || checked.iter().filter(|(_, figures)| figures.error() <= allowed);
+            let fastest = within().map(|(_, figures)| figures.time_ratio).fold(f64::INFINITY, f64::min);
+            let about = within().filter(|(_, figures)| figures.time_ratio <= fastest * (1.0 + LEAST_GAIN));
+            about.min_by_key(|(setting, _)| setting.turned()).cloned()
         };
         Ok(Found {
             allowed,
