@@ -10,7 +10,7 @@ use crate::support::report::{FrameRecord, round};
 
 /// A setting's figures: a line of the resume file, and of the tables. Shares are of 1, and of all
 /// samples of a frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     /// The median frame, milliseconds.
     pub median_ms: f64,

@@ -18,6 +18,7 @@ mod runner;
 mod search;
 #[path = "../support/mod.rs"]
 pub mod support;
+mod together;
 mod worlds;
 
 use std::fs;

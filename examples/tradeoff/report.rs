@@ -13,6 +13,7 @@ use crate::support::flags::Flags;
 use crate::support::markdown::{command, percent, setting, table};
 use crate::support::report::write_csv;
 use crate::support::table::count;
+use crate::together;
 
 /// A line of `tradeoff.csv`. Shares are of 1; see [`Figures`].
 #[derive(Debug, Serialize)]
@@ -110,6 +111,7 @@ fn page(flags: &Flags, base: &str, outcomes: &[Outcome]) -> anyhow::Result<Strin
             outcome.found.as_ref().map_or(String::new(), found),
         );
     }
+    page += &together::section(outcomes);
     Ok(page)
 }
 
