@@ -18,7 +18,7 @@ const TABLE: &[Row] = &[
     ("n_av", &["1", "5", "10", "20"]),
     ("p_skip", &["0.25", "0.5", "0.75", "0.9"]),
     ("tight_boxes", &["never", "settled", "always"]),
-    ("max_error_px", &["0", "2", "4", "8"]),
+    ("max_error_px", &["2", "4", "8"]),
 ];
 
 /// A dial that is turned.
