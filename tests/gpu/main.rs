@@ -7,6 +7,7 @@ mod failures;
 mod geometry;
 mod indirect;
 mod indirect_renderer;
+mod late;
 mod lifecycle;
 mod mutations;
 mod parallel;

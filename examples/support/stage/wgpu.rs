@@ -72,7 +72,7 @@ impl Picture {
         };
         Ok(Self {
             color: texture(Self::COLOR, TextureUsages::COPY_SRC),
-            depth: texture(TextureFormat::Depth32Float, TextureUsages::empty()),
+            depth: texture(TextureFormat::Depth32Float, TextureUsages::COPY_SRC),
             size: (viewport.width, viewport.height),
         })
     }

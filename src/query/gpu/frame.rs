@@ -3,13 +3,16 @@
 use std::time::Instant;
 
 use bytemuck::bytes_of;
-use wgpu::{BindGroup, CommandEncoder, CommandEncoderDescriptor, Device, RenderPass, SubmissionIndex};
+use wgpu::{
+    Backend, BindGroup, CommandEncoder, CommandEncoderDescriptor, Device, RenderPass, SubmissionIndex,
+};
 
 use super::ask_natively::{self, AskNatively};
 use super::batch::{Batch, State};
 use super::bind;
 use super::clock::{Clock, Tape};
 use super::counter::Counters;
+use super::kept_depths::can_be_kept;
 use super::pack::PackedFrame;
 use super::questions::Terms;
 use super::sweep::answer::Sweeps;
@@ -28,19 +31,32 @@ pub(super) struct Frame {
     bindings: BindGroup,
     /// The same for native queries, if there are any.
     native_bindings: Option<BindGroup>,
+    /// Whether questions see an earlier depth.
+    is_late: bool,
+    /// How many depths are kept, this one's among them.
+    keeps: usize,
     /// What was recorded since the last submission.
     pub(super) encoder: Option<CommandEncoder>,
+    /// The same of late questions, which wait for none of this frame's draws.
+    late: Option<CommandEncoder>,
     /// Whether a pass has cleared the attachments, or loaded them for the first time.
     opened: bool,
     pub(super) last_submission: Option<SubmissionIndex>,
 }
 
 impl GpuQueries {
-    pub(super) fn begin_frame(&mut self, view: &View) -> Result<(), Error> {
+    /// Begins a frame whose questions see the depth of so many frames ago, 0 for its own; returns the view
+    /// of that frame, if there is such a depth.
+    pub(super) fn begin_frame(&mut self, view: &View, late: usize) -> Result<Option<View>, Error> {
         let Some(targets) = self.targets.clone() else {
             return Err(Error::Target { why: "there are none: call GpuQueries::target first".into() });
         };
         targets.check(view, self.backend)?;
+        // Native queries see what is attached. OpenGL's emulation copies no depth.
+        let can_be_late = self.native.is_none() && self.backend != Backend::Gl;
+        let keeps = if can_be_late && can_be_kept(targets.depth.view.texture()) { late } else { 0 };
+        let past = if keeps > 0 { self.kept.ago(late, view, &targets) } else { None };
+        let depth = past.map_or(targets.readable_depth(), |past| &past.readable);
         let several = view.samples() > 1;
         let counters = match &mut self.counters[usize::from(several)] {
             Some(counters) => counters,
@@ -55,11 +71,15 @@ impl GpuQueries {
             self.queue.write_buffer(&self.uniforms, 0, bytes_of(&PackedFrame::new(view)));
             let bind =
                 |pass: &AskNatively| bind::frame(&self.device, &pass.layouts.frame, &self.uniforms, None);
-            let counting = counters.bind_frame(&self.device, &self.uniforms, targets.readable_depth());
+            let counting = counters.bind_frame(&self.device, &self.uniforms, depth);
             (counting, self.native.as_ref().map(bind))
         })?;
         let native_slack = self.native.as_ref().map(|_| ask_natively::slack(view.format()));
+        let past = past.map(|past| past.view.clone());
         self.frame = Some(Frame {
+            is_late: past.is_some(),
+            keeps,
+            late: None,
             view: view.clone(),
             targets,
             terms: Terms::new(view, self.slack, native_slack, &self.device.limits()),
@@ -69,14 +89,16 @@ impl GpuQueries {
             opened: false,
             last_submission: None,
         });
-        Ok(())
+        Ok(past)
     }
 
     /// A pass on the app's attachments.
     pub(super) fn open_pass(&mut self) -> Result<RenderPass<'static>, Error> {
         self.stats.draw_passes += 1;
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
-        self.counters.iter_mut().flatten().for_each(Counters::depth_changed);
+        if !frame.is_late {
+            self.counters.iter_mut().flatten().for_each(Counters::depth_changed);
+        }
         Ok(frame.pass(&self.device, &mut self.clock, false))
     }
 
@@ -94,7 +116,9 @@ impl GpuQueries {
         if self.open.asked.is_empty() {
             return Ok(());
         }
-        self.open_first()?;
+        if !self.frame.as_ref().is_some_and(|frame| frame.is_late) {
+            self.open_first()?;
+        }
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
         let counters = self.counters[usize::from(frame.view.samples() > 1)].as_mut();
         let counters = counters.expect("they were made when the frame began");
@@ -103,7 +127,12 @@ impl GpuQueries {
             let batch = free(&mut self.batches, &self.device);
             batch.load(&self.device, &self.queue, &mut self.open);
             let viewport = frame.view.viewport();
-            let mut tape = tape(&mut frame.encoder, &self.device, &mut self.clock);
+            // The clock follows what is drawn, and is read when that is submitted.
+            let (encoder, clock) = match frame.is_late {
+                true => (&mut frame.late, &mut None),
+                false => (&mut frame.encoder, &mut self.clock),
+            };
+            let mut tape = tape(encoder, &self.device, clock);
             counters.record(&mut tape, &frame.bindings, batch, viewport);
             let native = self.native.as_mut().filter(|_| !batch.questions.queries.is_empty());
             if let (Some(native), Some(bindings)) = (native, &frame.native_bindings) {
@@ -117,7 +146,16 @@ impl GpuQueries {
     pub(super) fn bring_answers(&mut self, wait: Wait) -> Result<(), Error> {
         self.record_questions()?;
         if self.awaits(State::Recorded) {
-            self.submit()?;
+            // Late questions go by themselves: then nobody waits for what was drawn. Sweeps see it.
+            let sweeps = self.sweeps.as_ref().is_some_and(|sweeps| sweeps.any(State::Recorded));
+            let frame = self.frame.as_mut().ok_or_else(not_begun)?;
+            match frame.late.take() {
+                Some(late) if !sweeps => self.submit_recorded(None, Some(late))?,
+                late => {
+                    let drawn = frame.encoder.take();
+                    self.submit_recorded(drawn, late)?;
+                }
+            }
         }
         match wait {
             Wait::Poll => guard::poll(&self.device)?,
@@ -135,28 +173,48 @@ impl GpuQueries {
         if !frame.opened || frame.targets.resolves() {
             drop(frame.pass(&self.device, &mut self.clock, true));
         }
+        if frame.keeps > 0 {
+            let depth = (&frame.view, frame.targets.depth.view.texture());
+            let tape = tape(&mut frame.encoder, &self.device, &mut self.clock);
+            guard::guarded(&self.device, || self.kept.keep(&self.device, tape.encoder, depth, frame.keeps))?;
+        }
         self.submit()
     }
 
     /// Submits what was recorded since the last time.
     pub(super) fn submit(&mut self) -> Result<(), Error> {
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
-        let Some(encoder) = frame.encoder.take() else { return Ok(()) };
+        let drawn = frame.encoder.take();
+        self.submit_recorded(drawn, None)
+    }
+
+    /// Submits what was drawn, and late questions.
+    fn submit_recorded(
+        &mut self,
+        drawn: Option<CommandEncoder>,
+        late: Option<CommandEncoder>,
+    ) -> Result<(), Error> {
+        let frame = self.frame.as_mut().ok_or_else(not_begun)?;
+        let is_timed = drawn.is_some();
+        if !is_timed && late.is_none() {
+            return Ok(());
+        }
         self.stats.submits += 1;
         // The app's own mistakes in a pass come to light when its recording is finished.
-        let finished = guard::guarded(&self.device, || encoder.finish());
+        let finish = |encoder: CommandEncoder| guard::guarded(&self.device, || encoder.finish());
+        let finished: Result<Vec<_>, Error> = drawn.into_iter().chain(late).map(finish).collect();
         let submitted = finished.and_then(|commands| {
             guard::guarded(&self.device, || {
-                let index = self.queue.submit([commands]);
+                let index = self.queue.submit(commands);
                 let recorded = self.batches.iter().filter(|batch| batch.state() == State::Recorded);
                 recorded.for_each(Batch::await_results);
                 self.sweeps.iter().for_each(Sweeps::submitted);
-                self.clock.iter_mut().for_each(Clock::submitted);
+                self.clock.iter_mut().filter(|_| is_timed).for_each(Clock::submitted);
                 index
             })
         });
         if submitted.is_err() {
-            self.clock.iter_mut().for_each(Clock::dropped);
+            self.clock.iter_mut().filter(|_| is_timed).for_each(Clock::dropped);
         }
         frame.last_submission = Some(submitted?);
         Ok(())

@@ -39,6 +39,7 @@
 //! | `counter`, `bind` | the ways of counting, behind one door |
 //! | `count_fragments`, `count_workgroups`, `gather_blocks`, `ask_natively` | one pass each |
 //! | `rectangles` | the draw of all proxies that passes in fragment shaders share |
+//! | `kept_depths` | depths of earlier frames, for late questions |
 //! | `frame` | passes are recorded, submitted once a wave, and waited for |
 //! | `batch`, `read_back` | buffers of a question pass, from upload to read-back |
 //! | `sweep` | many objects at once, from their boxes to verdicts |
@@ -70,6 +71,7 @@ mod frame;
 mod gather_blocks;
 mod guard;
 mod indirect;
+mod kept_depths;
 mod pack;
 mod questions;
 mod read_back;
@@ -99,6 +101,7 @@ use batch::Batch;
 use clock::{Clock, Times};
 use counter::Counters;
 use frame::Frame;
+use kept_depths::KeptDepths;
 use pack::{EMULATED_RANGE, PackedFrame};
 use questions::Questions;
 use sweep::answer::Sweeps;
@@ -196,6 +199,7 @@ pub struct GpuQueries {
     /// Asked and not yet recorded.
     open: Questions,
     batches: Vec<Batch>,
+    kept: KeptDepths,
     sweeps: Option<Sweeps>,
     stats: GpuStats,
 }
@@ -247,6 +251,7 @@ impl GpuQueries {
             frame: None,
             open: Questions::default(),
             batches: Vec::new(),
+            kept: KeptDepths::default(),
             sweeps: None,
             stats: GpuStats::default(),
         })
@@ -282,6 +287,13 @@ impl GpuQueries {
         self.forget();
     }
 
+    /// Forgets the last frame.
+    fn restart(&mut self) {
+        self.forget();
+        self.frame = None;
+        self.stats = GpuStats::default();
+    }
+
     /// Forgets all questions.
     fn forget(&mut self) {
         self.open.clear();
@@ -303,10 +315,14 @@ impl QueryBackend for GpuQueries {
     }
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
-        self.forget();
-        self.frame = None;
-        self.stats = GpuStats::default();
-        self.begin_frame(view)
+        self.kept.clear();
+        self.restart();
+        self.begin_frame(view, 0).map(drop)
+    }
+
+    fn begin_late(&mut self, view: &View, frames: u32) -> Result<Option<View>, Error> {
+        self.restart();
+        self.begin_frame(view, frames as usize)
     }
 
     fn draw(&mut self, record: impl FnOnce(&mut RenderPass<'static>)) -> Result<(), Error> {
