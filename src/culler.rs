@@ -4,16 +4,21 @@
 //! backend: draws join the render queue, questions flush it first, answers go back to the policy.
 //! An answer that does not come is *unknown*, which draws; one that nobody waits for is dropped.
 
+mod drawn;
+mod open;
 mod why;
 
 use std::time::{Duration, Instant};
 
+use drawn::DrawnList;
+use open::{OpenQuestions, Purse};
+
 pub use why::{Holder, Why};
 
 use crate::geom::{Frustum, PlaneMask, View};
-use crate::policy::{Action, Context, Extent, Policy};
-use crate::query::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait};
-use crate::scene::{ObjectId, ObjectRef, Scene};
+use crate::policy::{Action, Context, Past, Policy};
+use crate::query::{Answer, DrawTime, QueryBackend, Sweep, Wait};
+use crate::scene::{ObjectRef, Scene};
 use crate::stats::FrameStats;
 use crate::tree::{NodeId, Votes};
 use crate::{Costs, Error, Tradeoff};
@@ -26,6 +31,10 @@ pub struct Culler<P> {
     pub tradeoff: Tradeoff,
     costs: Costs,
     frame: u32,
+    /// How many times coarser than the view the depth of the last frame was.
+    divisor: u32,
+    /// The frame whose depth its questions saw, if it was an earlier one.
+    past: Option<Past>,
     /// The scene, and the making of its tree, that the history is about; 0 for none yet.
     scene: (u64, u64),
     drawn: DrawnList,
@@ -51,6 +60,8 @@ impl<P: Policy> Culler<P> {
             tradeoff: Tradeoff::EXACT,
             costs: Costs::default(),
             frame: 0,
+            divisor: 1,
+            past: None,
             scene: (0, 0),
             drawn: DrawnList::default(),
             open: OpenQuestions::default(),
@@ -97,13 +108,16 @@ impl<P: Policy> Culler<P> {
         if self.policy.needs_blocking() && !queries.can_block() {
             return Err(Error::CannotBlock { policy: self.policy.name(), backend: queries.name() });
         }
-        if self.scene != scene.id() {
+        let is_other = self.scene != scene.id();
+        if is_other {
             if self.scene.0 != scene.id().0 {
                 self.drawn.forget();
             }
             self.scene = scene.id();
             self.policy.reset();
         }
+        self.divisor = if queries.owns_depth() { self.tradeoff.resolution_divisor.max(1) } else { 1 };
+        let view = &view.coarsened(self.divisor);
         let frustum = Frustum::new(view);
         let is_announced = std::mem::take(&mut self.expects_cut);
         let is_cut = is_announced || self.detects_cuts && self.drawn.is_cut(scene, &frustum);
@@ -115,14 +129,20 @@ impl<P: Policy> Culler<P> {
         self.open.clear();
         self.drawn.begin(scene, self.frame);
         self.drawn.owned = self.policy.asks_owners();
-        let tradeoff = self.tradeoff;
+        let tradeoff = self.tradeoff.at_resolution(self.divisor);
+        // What was seen from elsewhere, or of another scene, says nothing of this frame.
+        let late = if is_cut || is_other { 0 } else { tradeoff.latency.frames() };
+        self.past = match late {
+            0 => queries.begin(view).map(|()| None)?,
+            _ => queries.begin_late(view, late)?.map(|past| Past::new(past, late, view, tradeoff.swept)),
+        };
+        let mut purse = Purse::new(tradeoff.budget, start);
         let (frame, costs) = (self.frame, self.costs);
-        let tree = scene.tree();
-        let cx = Context { scene, tree, view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
+        let (tree, past) = (scene.tree(), self.past.as_ref());
+        let cx = Context { scene, tree, view, frustum: &frustum, frame, tradeoff: &tradeoff, costs, past };
         let mut stats = FrameStats { cuts: is_cut.into(), ..FrameStats::default() };
         // What asking reports. Nothing more is asked then, and all that is open is unknown.
         let mut failure = None;
-        queries.begin(view)?;
         let draw_time = queries.draw_time();
         if let DrawTime::Device { total, awaited } = draw_time {
             (stats.device_draw, stats.awaited_draw) = (total, awaited);
@@ -138,22 +158,30 @@ impl<P: Policy> Culler<P> {
                 }
                 Action::DrawObjects(objects) => self.drawn.queue_objects(scene, objects),
                 Action::Ask { ticket, boxes, want } => {
+                    let ticket = self.open.ask(ticket);
+                    if !purse.pays(boxes) {
+                        stats.refused += 1;
+                        continue;
+                    }
                     if self.drawn.flush(queries, &mut draw, &mut stats)? || stats.queries == 0 {
                         // From drawing to asking, and back before the next draw.
                         stats.state_changes += 2;
                     }
                     stats.queries += 1;
                     stats.query_boxes += boxes.len() as u32;
-                    let ticket = self.open.ask(ticket);
                     stats.query += attempt(&mut failure, || queries.ask(ticket, boxes, want));
                 }
                 Action::Sweep { ticket, groups, loose, test } => {
+                    let ticket = self.open.ask(ticket);
+                    if !purse.pays(&[]) {
+                        stats.refused += 1;
+                        continue;
+                    }
                     if self.drawn.flush(queries, &mut draw, &mut stats)? || stats.queries == 0 {
                         stats.state_changes += 2;
                     }
                     stats.queries += 1;
                     stats.query_boxes += (groups.len() + loose.len()) as u32;
-                    let ticket = self.open.ask(ticket);
                     let sweep = Sweep { scene, view, frustum: &frustum, groups, loose, test };
                     stats.query += attempt(&mut failure, || queries.sweep(ticket, &sweep));
                 }
@@ -271,188 +299,6 @@ impl<P> Voter for Culler<P> {
         &mut self.votes
     }
 }
-
-/// The questions of a frame that have no answer yet, numbered for the backend: from frame to frame,
-/// so that an answer which comes after its frame is not taken for that to another question.
-#[derive(Debug, Default)]
-struct OpenQuestions {
-    /// By the backend's number, less the frame's first: the policy's own ticket, until it is answered.
-    asked: Vec<Option<Ticket>>,
-    /// The number of the frame's first question.
-    base: u32,
-    /// All before this are answered.
-    first: usize,
-}
-
-impl OpenQuestions {
-    fn clear(&mut self) {
-        self.base = self.base.wrapping_add(self.asked.len() as u32);
-        self.asked.clear();
-        self.first = 0;
-    }
-
-    fn ask(&mut self, ticket: Ticket) -> Ticket {
-        self.asked.push(Some(ticket));
-        Ticket(self.base.wrapping_add(self.asked.len() as u32 - 1))
-    }
-
-    /// The policy's ticket of an answer that it waits for; none for one that comes twice, or is
-    /// to no question of this frame.
-    fn close(&mut self, ticket: Ticket) -> Option<Ticket> {
-        self.asked.get_mut(ticket.0.wrapping_sub(self.base) as usize)?.take()
-    }
-
-    /// Those that should have been answered by now, and were not.
-    fn lost(&mut self) -> impl Iterator<Item = Ticket> {
-        let first = std::mem::replace(&mut self.first, self.asked.len());
-        self.asked[first..].iter_mut().filter_map(Option::take)
-    }
-}
-
-/// The render queue, and the lists of what it has drawn.
-#[derive(Debug, Default)]
-struct DrawnList {
-    /// To be drawn with the next flush.
-    queue: Vec<ObjectRef>,
-    /// No occluders: to be drawn last.
-    late: Vec<ObjectRef>,
-    visible: Vec<ObjectRef>,
-    entered: Vec<ObjectRef>,
-    previous: Vec<ObjectRef>,
-    /// By slot: which object was last drawn, and in which frame.
-    last_drawn: Vec<(u32, u32)>,
-    frame: u32,
-    /// Whether the backend is to know whose draws are whose.
-    owned: bool,
-}
-
-impl DrawnList {
-    /// Whether next to nothing of what was drawn in the last frame is in view now. O(1): a few objects
-    /// speak for all.
-    fn is_cut(&self, scene: &Scene, frustum: &Frustum) -> bool {
-        let step = self.visible.len().div_ceil(CUT_SAMPLES).max(1);
-        let (mut seen, mut still) = (0, 0);
-        for object in self.visible.iter().step_by(step) {
-            // What is drawn always, or is gone, says nothing about the view.
-            if let Some(aabb) = scene.object(object.id).and_then(|object| object.bounds) {
-                seen += 1;
-                still += usize::from(frustum.intersects(&aabb));
-            }
-        }
-        seen >= CUT_SAMPLES / 4 && still * CUT_SHARE < seen
-    }
-
-    /// Starts anew: everything drawn next has entered, and nothing has left.
-    fn forget(&mut self) {
-        self.visible.clear();
-        self.previous.clear();
-        self.entered.clear();
-        self.last_drawn.clear();
-    }
-
-    fn begin(&mut self, scene: &Scene, frame: u32) {
-        self.frame = frame;
-        self.queue.clear();
-        self.late.clear();
-        self.entered.clear();
-        std::mem::swap(&mut self.visible, &mut self.previous);
-        self.visible.clear();
-        let bound = scene.slot_bound().max(self.last_drawn.len());
-        self.last_drawn.resize(bound, (0, 0));
-    }
-
-    /// Queues an object, unless it was queued in this frame before.
-    fn queue(&mut self, scene: &Scene, slot: u32) {
-        let store = scene.objects_store();
-        let object = store.object(slot);
-        let last = &mut self.last_drawn[slot as usize];
-        let (generation, frame) = std::mem::replace(last, (object.id.generation(), self.frame));
-        if frame == self.frame {
-            return;
-        }
-        if generation != object.id.generation() || frame == 0 || frame != self.frame.wrapping_sub(1) {
-            self.entered.push(object);
-        }
-        let list = if store.is_occluder(slot) { &mut self.queue } else { &mut self.late };
-        list.push(object);
-    }
-
-    fn queue_objects(&mut self, scene: &Scene, objects: &[ObjectId]) {
-        for &id in objects {
-            if let Some(slot) = scene.objects_store().slot(id) {
-                self.queue(scene, slot);
-            }
-        }
-    }
-
-    fn queue_node(
-        &mut self,
-        scene: &Scene,
-        cx: &Context<'_>,
-        stack: &mut Vec<(NodeId, PlaneMask)>,
-        node: NodeId,
-        extent: Extent,
-    ) {
-        let planes = if extent == Extent::Everything { PlaneMask::NONE } else { PlaneMask::ALL };
-        stack.push((node, planes));
-        while let Some((node, mask)) = stack.pop() {
-            if cx.tree.count(node) == 0 {
-                continue;
-            }
-            let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), mask) else { continue };
-            for (block, lane) in cx.tree.own_inside(node, cx.frustum, mask) {
-                self.queue(scene, block.slots[lane]);
-            }
-            if extent != Extent::Own {
-                let children = cx.tree.children(node).into_iter().flatten();
-                stack.extend(children.map(|child| (child, mask)));
-            }
-        }
-    }
-
-    /// Draws what is queued; true if there was something.
-    fn flush<B: QueryBackend>(
-        &mut self,
-        queries: &mut B,
-        draw: &mut impl FnMut(&mut B::Pass, &[ObjectRef]),
-        stats: &mut FrameStats,
-    ) -> Result<bool, Error> {
-        if self.queue.is_empty() {
-            return Ok(false);
-        }
-        stats.draw += timed(|| match self.owned {
-            true => queries.draw_objects(&self.queue, &mut *draw),
-            false => queries.draw(|pass| draw(pass, &self.queue)),
-        })?;
-        self.visible.append(&mut self.queue);
-        Ok(true)
-    }
-
-    /// Draws what hides nothing, after everything else.
-    fn flush_late<B: QueryBackend>(
-        &mut self,
-        queries: &mut B,
-        draw: &mut impl FnMut(&mut B::Pass, &[ObjectRef]),
-        stats: &mut FrameStats,
-    ) -> Result<bool, Error> {
-        std::mem::swap(&mut self.queue, &mut self.late);
-        self.flush(queries, draw, stats)
-    }
-
-    fn left(&self) -> impl Iterator<Item = ObjectRef> {
-        self.previous.iter().copied().filter(|object| !self.has(object.id))
-    }
-
-    /// Whether an object was drawn in the last frame.
-    fn has(&self, id: ObjectId) -> bool {
-        self.last_drawn.get(id.slot()) == Some(&(id.generation(), self.frame))
-    }
-}
-
-/// Objects of the last frame that are looked at for a cut.
-const CUT_SAMPLES: usize = 64;
-/// A cut leaves less than one in so many of them in view.
-const CUT_SHARE: usize = 16;
 
 /// Runs something unless something has failed before, and returns the time that it took.
 fn attempt(failure: &mut Option<Error>, f: impl FnOnce() -> Result<(), Error>) -> Duration {

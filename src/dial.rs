@@ -68,10 +68,15 @@ impl Dial {
         names: &[(&'static str, T)],
         about: &str,
     ) -> Self {
-        let current = names.iter().find(|(_, v)| *v == value).map_or("", |(name, _)| *name);
+        let current = choice_name(value, names);
         let kind = DialKind::Choice(names.iter().map(|(name, _)| *name).collect());
         Self { key, value: current.to_owned(), about: format!("{about}: {}", join(names)), kind }
     }
+}
+
+/// The name of one of a few named values.
+pub(crate) fn choice_name<T: PartialEq>(value: T, names: &[(&'static str, T)]) -> &'static str {
+    names.iter().find(|(_, v)| *v == value).map_or("", |(name, _)| *name)
 }
 
 /// Reads a value within a range.

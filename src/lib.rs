@@ -101,7 +101,7 @@ pub use culler::{Culler, Holder, Voter, Why};
 pub use dial::{Dial, DialKind};
 pub use error::Error;
 pub use stats::{Counter, FrameStats};
-pub use tradeoff::Tradeoff;
+pub use tradeoff::{Budget, Latency, PRESETS, Tradeoff};
 
 /// The README's programs compile; that which needs no GPU runs.
 #[cfg(all(doctest, feature = "gpu"))]

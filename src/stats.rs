@@ -21,6 +21,8 @@ pub struct FrameStats {
     pub queries: u32,
     /// Boxes in them.
     pub query_boxes: u32,
+    /// Questions for which the budget had no room: what they were about was drawn.
+    pub refused: u32,
     /// Times that the policy waited for answers.
     pub waves: u32,
     /// Changes between drawing and asking.

@@ -57,7 +57,16 @@ impl Rig {
         let frustum = Frustum::new(&view);
         let (scene, tree, frame, costs) = (&self.scene, self.scene.tree(), self.frame, self.costs);
         let tradeoff = Tradeoff::EXACT;
-        let cx = Context { scene, tree, view: &view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
+        let cx = Context {
+            scene,
+            tree,
+            view: &view,
+            frustum: &frustum,
+            frame,
+            tradeoff: &tradeoff,
+            costs,
+            past: None,
+        };
         let (mut drawn, mut questions, mut open, mut actions) = (0, 0, Vec::new(), Vec::new());
         policy.begin(&cx);
         loop {
@@ -233,7 +242,16 @@ fn lost_answers_do_not_open_the_gate() {
     for frame in 1..100 {
         let (scene, costs, tradeoff) = (&rig.scene, rig.costs, Tradeoff::EXACT);
         let tree = scene.tree();
-        let cx = Context { scene, tree, view: &view, frustum: &frustum, frame, tradeoff: &tradeoff, costs };
+        let cx = Context {
+            scene,
+            tree,
+            view: &view,
+            frustum: &frustum,
+            frame,
+            tradeoff: &tradeoff,
+            costs,
+            past: None,
+        };
         policy.begin(&cx);
         let mut asked: u32 = 0;
         loop {

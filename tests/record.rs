@@ -3,6 +3,8 @@
 #[path = "support/stage.rs"]
 mod stage;
 
+use std::time::Duration;
+
 use stage::Stage;
 use tercet::draw::Drawable;
 use tercet::geom::Viewport;
@@ -12,7 +14,7 @@ use tercet::query::software::SoftwareQueries;
 use tercet::record::{Logged, Player, Recorder};
 use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::TreeConfig;
-use tercet::{Culler, Error, worlds};
+use tercet::{Budget, Culler, Error, Latency, Tradeoff, worlds};
 
 const FRAMES: u32 = 24;
 const SCREEN: Viewport = Viewport::new(160, 90);
@@ -50,6 +52,7 @@ fn record(policy: Box<dyn Policy>, noted: Box<dyn Policy>, seed: u64) -> (Vec<u8
         if frame == CUT {
             eye.cut();
         }
+        eye.tradeoff = tradeoff(frame);
         recorder.begin(&mut scene, &view, &eye);
         let result = eye.frame(&scene, &view, &mut queries, |pass, objects| {
             for object in objects {
@@ -67,6 +70,25 @@ fn record(policy: Box<dyn Policy>, noted: Box<dyn Policy>, seed: u64) -> (Vec<u8
     }
     recorder.finish().expect("an end");
     (file, shown)
+}
+
+/// Every dial has its turn.
+fn tradeoff(frame: u32) -> Tradeoff {
+    let budget = match frame % 5 {
+        3 => Budget { queries: Some(7), ..Budget::default() },
+        4 => Budget { time: Some(Duration::from_micros(150)), ..Budget::default() },
+        _ => Budget::default(),
+    };
+    Tradeoff {
+        visible_pixels: frame % 3,
+        n_av: Some(frame % 4),
+        p_skip: Some(0.5),
+        resolution_divisor: 1 + frame / 4 % 2,
+        latency: if frame < 12 { Latency::Late(2) } else { Latency::SameFrame },
+        swept: frame.is_multiple_of(2),
+        budget,
+        ..Tradeoff::EXACT
+    }
 }
 
 fn named(name: &str) -> Box<dyn Policy> {
@@ -167,7 +189,7 @@ fn an_altered_file_says_so() {
     let mut newer = file.clone();
     newer[8] = 200;
     let error = play(&newer).expect_err("it is of another version");
-    assert!(error.contains("version 200") && error.contains("version 1:"), "{error}");
+    assert!(error.contains("version 200") && error.contains("version 2:"), "{error}");
 }
 
 #[test]

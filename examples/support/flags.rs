@@ -11,6 +11,7 @@ use tercet::draw::Detail;
 use tercet::geom::Viewport;
 use tercet::policy::{self, Gated, Policy};
 use tercet::tree::TreeConfig;
+use tercet::{Culler, PRESETS, Tradeoff};
 
 use super::program::Program;
 
@@ -150,6 +151,13 @@ impl Flags {
         Ok(policy)
     }
 
+    /// A culler with that policy, as exact as the flags say.
+    pub fn eye(&self) -> anyhow::Result<Culler<Box<dyn Policy>>> {
+        let mut eye = Culler::new(self.policy()?);
+        eye.tradeoff = self.tradeoff()?;
+        Ok(eye)
+    }
+
     /// Turns the dials that a policy has.
     pub fn turn(&self, policy: &mut dyn Policy) -> anyhow::Result<()> {
         let known = policy.dials();
@@ -187,6 +195,19 @@ impl Flags {
         Ok(())
     }
 
+    /// Speed against accuracy: a preset (`--set tradeoff=NAME`), and dials turned from there.
+    pub fn tradeoff(&self) -> anyhow::Result<Tradeoff> {
+        let mut tradeoff = Tradeoff::EXACT;
+        for (_, name) in self.dials.iter().filter(|(key, _)| key == "tradeoff") {
+            tradeoff = Tradeoff::by_name(name)?;
+        }
+        let known = tradeoff.dials();
+        for (key, value) in self.dials.iter().filter(|(key, _)| has(&known, key)) {
+            tradeoff.set(key, value)?;
+        }
+        Ok(tradeoff)
+    }
+
     /// The tree's dials.
     pub fn tree(&self) -> anyhow::Result<TreeConfig> {
         self.tree_from(TreeConfig::default())
@@ -197,7 +218,7 @@ impl Flags {
         for (key, value) in self.dials.iter().filter(|(key, _)| is_tree_dial(key)) {
             tree.set(key, value)?;
         }
-        Ok(tree)
+        Ok(self.tradeoff()?.tree(tree))
     }
 
     /// The same flags with another default for the scale.
@@ -209,22 +230,17 @@ impl Flags {
     /// How finely meshes are drawn.
     pub fn detail(&self) -> anyhow::Result<Detail> {
         let default = if self.full_detail { Detail::FULL } else { Detail::default() };
-        let max_error_px = self.number(&MAX_ERROR, default.max_error_px)?;
-        Ok(Detail { max_error_px })
+        Ok(self.tradeoff()?.detail(default))
     }
 
     /// How far the camera flies, 0 to 1.
     pub fn flight_end(&self) -> anyhow::Result<f32> {
-        self.number(&FLIGHT_END, 1.0)
-    }
-
-    fn number(&self, dial: &Number, default: f32) -> anyhow::Result<f32> {
-        let Some((key, value)) = self.dials.iter().rev().find(|(key, _)| key == dial.key) else {
-            return Ok(default);
+        let Some((key, value)) = self.dials.iter().rev().find(|(key, _)| key == FLIGHT_END) else {
+            return Ok(1.0);
         };
         match value.parse() {
-            Ok(x) if (0.0..=dial.most).contains(&x) => Ok(x),
-            _ => bail!("cannot set {key}={value}: it takes a number from 0 to {}", dial.most),
+            Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
+            _ => bail!("cannot set {key}={value}: it takes a number from 0 to 1"),
         }
     }
 
@@ -255,18 +271,7 @@ impl Flags {
 }
 
 /// A dial of the examples themselves.
-struct Number {
-    key: &'static str,
-    about: &'static str,
-    most: f32,
-}
-
-const MAX_ERROR: Number = Number {
-    key: "max_error_px",
-    about: "how far a coarser mesh may lie from the true one, pixels",
-    most: 1e6,
-};
-const FLIGHT_END: Number = Number { key: "flight_end", about: "how far the camera flies, 0 to 1", most: 1.0 };
+const FLIGHT_END: &str = "flight_end";
 
 /// A policy with its default dials.
 fn by_name(name: &str, gate: bool) -> anyhow::Result<Box<dyn Policy>> {
@@ -292,7 +297,7 @@ fn is_tree_dial(key: &str) -> bool {
 }
 
 fn is_own_dial(key: &str) -> bool {
-    [MAX_ERROR, FLIGHT_END].iter().any(|dial| dial.key == key)
+    key == FLIGHT_END || key == "tradeoff" || has(&Tradeoff::EXACT.dials(), key)
 }
 
 /// The command with an example's own flags. Its name and purpose come last: adding flags brings
@@ -326,15 +331,16 @@ fn catalogue(program: &Program) -> String {
     }
     list(&mut text, "Dials of the tree", &TreeConfig::default().dials());
     let _ = writeln!(text, "  {:<24} all of them at once: paper, stable", "preset=stable");
-    let own = |dial: Number, value: f32| tercet::Dial {
-        key: dial.key,
-        value: value.to_string(),
-        about: dial.about.to_owned(),
+    list(&mut text, "Speed against accuracy", &Tradeoff::EXACT.dials());
+    let presets: Vec<_> = PRESETS.iter().map(|(name, _)| *name).collect();
+    let _ = writeln!(text, "  {:<24} all of them at once: {}", "tradeoff=exact", presets.join(", "));
+    let flight_end = tercet::Dial {
+        key: FLIGHT_END,
+        value: 1.to_string(),
+        about: "how far the camera flies, 0 to 1".to_owned(),
         kind: tercet::DialKind::Real,
     };
-    let detail = if program.full_detail { Detail::FULL } else { Detail::default() };
-    let own = [own(MAX_ERROR, detail.max_error_px), own(FLIGHT_END, 1.0)];
-    list(&mut text, "Dials of the example", &own);
+    list(&mut text, "Dials of the example", &[flight_end]);
     text.truncate(text.trim_end().len());
     text
 }

@@ -17,6 +17,7 @@ pub fn run(flags: &Flags, mut scenario: Scenario) -> anyhow::Result<()> {
     let config = SceneConfig { tree: flags.tree()?, ..Default::default() };
     let mut scene = Scene::new(config.clone());
     let mut eye = Culler::new(flags.policy()?);
+    eye.tradeoff = flags.tradeoff()?;
     let mut stage = Stage::new(flags)?;
     let mut recording = Recording::new(flags, &config, &mut scene, &eye, &mut stage, &scenario.name)?;
     // Before the first frame: the tree is built at once as finely as somebody who asks wants it.

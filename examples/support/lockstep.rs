@@ -65,6 +65,7 @@ impl Lane {
     pub fn new(flags: &Flags, policy: Box<dyn Policy>, tree: TreeConfig) -> anyhow::Result<Self> {
         let (mut scene, mut eye) =
             (Scene::new(SceneConfig { tree, ..Default::default() }), Culler::new(policy));
+        eye.tradeoff = flags.tradeoff()?;
         scene.adapt([&mut eye]);
         let detail = flags.detail()?;
         Ok(Self {

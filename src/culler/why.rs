@@ -93,6 +93,7 @@ impl<P: Policy> Culler<P> {
             (None, _) if drawn => return Why::Always { bad: description.bad },
             _ => return Why::Unknown { drawn },
         };
+        let view = &view.coarsened(self.divisor);
         let frustum = Frustum::new(view);
         let cx = self.context(scene, view, &frustum);
         let way_up = std::iter::successors(Some(leaf), |&node| tree.parent(node));
@@ -113,9 +114,10 @@ impl<P: Policy> Culler<P> {
     /// by it. Empty nodes are left out; `view` is that frame's. The cost a node is that of
     /// [`Culler::why`].
     pub fn fates(&self, scene: &Scene, view: &View) -> impl Iterator<Item = (NodeInfo, Fate)> {
-        let (frustum, knows) = (Frustum::new(view), self.knows(scene));
+        let view = view.coarsened(self.divisor);
+        let (frustum, knows) = (Frustum::new(&view), self.knows(scene));
         scene.tree().nodes().filter(|node| node.below > 0).map(move |node| {
-            let cx = self.context(scene, view, &frustum);
+            let cx = self.context(scene, &view, &frustum);
             (node, if knows { self.policy.fate(&cx, node.id) } else { Fate::Unknown })
         })
     }
@@ -128,7 +130,8 @@ impl<P: Policy> Culler<P> {
     /// The last frame's context.
     fn context<'a>(&'a self, scene: &'a Scene, view: &'a View, frustum: &'a Frustum) -> Context<'a> {
         let (frame, costs) = (self.frame, self.costs);
-        Context { scene, tree: scene.tree(), view, frustum, frame, tradeoff: &self.tradeoff, costs }
+        let (tree, tradeoff, past) = (scene.tree(), &self.tradeoff, self.past.as_ref());
+        Context { scene, tree, view, frustum, frame, tradeoff, costs, past }
     }
 }
 

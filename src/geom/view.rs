@@ -167,6 +167,20 @@ impl View {
         self
     }
 
+    /// The same view with so many times fewer columns and rows of pixels, rounded up. 0 counts as 1.
+    #[must_use]
+    pub fn coarsened(&self, divisor: u32) -> Self {
+        let divisor = divisor.max(1);
+        let Viewport { x, y, width, height } = self.viewport;
+        let viewport = Viewport {
+            x: x / divisor,
+            y: y / divisor,
+            width: width.div_ceil(divisor),
+            height: height.div_ceil(divisor),
+        };
+        Self { viewport, ..self.clone() }
+    }
+
     /// The matrix from world to view space, as handed in.
     pub fn view_from_world(&self) -> Mat4 {
         self.view_from_world

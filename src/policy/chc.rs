@@ -126,7 +126,7 @@ impl Policy for Chc {
             self.coherence.found_hidden(cx, front.node);
             return;
         }
-        let terms = Terms { leaf: self.n_av, inner: 0 };
+        let terms = Terms { leaf: cx.tradeoff.n_av.unwrap_or(self.n_av), inner: 0 };
         self.coherence.found_visible(cx, front.node, terms.after(answer));
         if !was_visible {
             self.coherence.take_as_visible(cx, front);
@@ -168,7 +168,7 @@ impl Chc {
         let Look::Ask { was_visible } = self.coherence.look_at(cx, front) else {
             return self.coherence.take_as_visible(cx, front);
         };
-        match Question::new(&cx.tree.query_box(front.node), cx.view) {
+        match cx.question(front.node) {
             Question::Outside => {}
             Question::Visible => {
                 self.coherence.found_visible(cx, front.node, Terms::NONE);

@@ -218,7 +218,7 @@ impl DualQuery {
         self.stage = Stage::Counting;
         self.questions.start();
         while let Some(front) = self.unasked.pop() {
-            match Question::new(&cx.tree.query_box(front.node), cx.view) {
+            match cx.question(front.node) {
                 Question::Outside => self.history.entry(front.node).visible = false,
                 Question::Visible => self.votes.near(front.node),
                 Question::Ask(proxy) => {
@@ -251,7 +251,7 @@ impl DualQuery {
             self.take_as_visible(cx, front.node, front.mask);
             return None;
         }
-        match Question::new(&cx.tree.query_box(front.node), cx.view) {
+        match cx.question(front.node) {
             Question::Outside => None,
             Question::Visible => {
                 if cx.tree.is_leaf(front.node) {

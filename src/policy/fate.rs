@@ -90,7 +90,7 @@ impl History {
     /// O(edits) after the tree has changed its shape.
     pub fn fate(&self, cx: &Context<'_>, node: NodeId) -> Fate {
         let state = self.get(node);
-        let question = || Question::new(&cx.tree.query_box(node), cx.view);
+        let question = || cx.question(node);
         if state.frame != cx.frame {
             let outside = !cx.frustum.intersects(&cx.tree.bounds(node)) || question() == Question::Outside;
             if outside { Fate::Outside } else { Fate::NotReached }

@@ -23,6 +23,7 @@ mod nohc;
 mod none;
 mod odds;
 mod order;
+mod past;
 mod plan;
 mod recorded;
 mod roc;
@@ -47,6 +48,7 @@ pub use hybrid::{Hybrid, MoversApart};
 pub use nohc::Nohc;
 pub use none::DrawAll;
 pub use order::ScreenTiles;
+pub use past::Past;
 pub use plan::{First, Plan, Targets};
 pub use recorded::{Recorded, Recording};
 pub use roc::{EveryBox, Roc};
@@ -56,7 +58,7 @@ pub use stop_and_wait::StopAndWait;
 pub use two_phase::TwoPhase;
 
 use crate::dial::{self, Dial};
-use crate::geom::{Frustum, Proxy, View};
+use crate::geom::{Aabb, Frustum, Proxy, Question, View};
 use crate::query::{Answer, SweepTest, Ticket, Want};
 use crate::scene::{ObjectId, Scene};
 use crate::tree::{NodeId, Tree, Votes};
@@ -79,6 +81,24 @@ pub struct Context<'a> {
     pub tradeoff: &'a Tradeoff,
     /// What asking and drawing cost in this view's last frames.
     pub costs: Costs,
+    /// The frame whose depth questions see, if it is an earlier one.
+    pub past: Option<&'a Past>,
+}
+
+impl Context<'_> {
+    /// What asking about a node comes to: [`Context::question_about`] its own box.
+    pub fn question(&self, node: NodeId) -> Question {
+        self.question_about(node, &self.tree.query_box(node))
+    }
+
+    /// What asking about a box comes to that holds something of a node: a policy makes all its
+    /// questions here.
+    pub fn question_about(&self, node: NodeId, aabb: &Aabb) -> Question {
+        match self.past {
+            None => Question::new(aabb, self.view),
+            Some(past) => past.question(self.tree, node, aabb),
+        }
+    }
 }
 
 /// Which objects of a node are meant. Only those that meet the frustum are drawn, unless it says

@@ -201,7 +201,7 @@ impl Nohc {
         let Look::Ask { was_visible } = self.coherence.look_at(cx, front) else {
             return self.coherence.take_as_visible(cx, front);
         };
-        match Question::new(&cx.tree.query_box(front.node), cx.view) {
+        match cx.question(front.node) {
             Question::Outside => {}
             Question::Visible => {
                 self.coherence.found_visible(cx, front.node, Terms::NONE);

@@ -130,7 +130,7 @@ impl Statistical {
                 self.take_as_visible(cx, front);
                 continue;
             }
-            match Question::new(&cx.tree.query_box(front.node), cx.view) {
+            match cx.question(front.node) {
                 Question::Outside => {}
                 Question::Visible => self.found_visible(cx, front),
                 Question::Ask(proxy) => {

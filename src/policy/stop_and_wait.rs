@@ -47,7 +47,7 @@ impl Policy for StopAndWait {
                 return Action::Draw(node, Extent::Own);
             }
             let Some(front) = self.front.pop() else { return Action::Done };
-            match Question::new(&cx.tree.query_box(front.node), cx.view) {
+            match cx.question(front.node) {
                 Question::Outside => {}
                 Question::Visible => self.found_visible(cx, front),
                 Question::Ask(proxy) => {

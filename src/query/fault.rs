@@ -82,6 +82,13 @@ impl<B> Faulty<B> {
     }
 
     /// Whether there is room for another question.
+    fn start(&mut self) {
+        self.asked = 0;
+        self.refused.clear();
+        self.doomed = self.faults.lost_device == Some(self.frames);
+        self.frames += 1;
+    }
+
     fn has_room(&mut self, ticket: Ticket) -> bool {
         self.asked += 1;
         let has_room = self.faults.room.is_none_or(|room| self.asked <= room);
@@ -104,11 +111,17 @@ impl<B: QueryBackend> QueryBackend for Faulty<B> {
     }
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
-        self.asked = 0;
-        self.refused.clear();
-        self.doomed = self.faults.lost_device == Some(self.frames);
-        self.frames += 1;
+        self.start();
         self.inner.begin(view)
+    }
+
+    fn begin_late(&mut self, view: &View, frames: u32) -> Result<Option<View>, Error> {
+        self.start();
+        self.inner.begin_late(view, frames)
+    }
+
+    fn owns_depth(&self) -> bool {
+        self.inner.owns_depth()
     }
 
     fn draw(&mut self, record: impl FnOnce(&mut B::Pass)) -> Result<(), Error> {

@@ -106,6 +106,22 @@ pub trait QueryBackend {
     /// What the device reports.
     fn begin(&mut self, view: &View) -> Result<(), Error>;
 
+    /// The same for a frame whose questions see the finished depth of `frames` frames ago, seen with that
+    /// frame's view, which is returned: proxies are to be made with it. None if there is no such depth,
+    /// because the backend keeps none, or frames begun in this way are too few yet: then questions see
+    /// this frame's, as ever. Sweeps always do. [`QueryBackend::begin`] lets go of what was kept.
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn begin_late(&mut self, view: &View, _frames: u32) -> Result<Option<View>, Error> {
+        self.begin(view).map(|()| None)
+    }
+
+    /// Whether depth is the backend's own, so that it may be coarser than what the app shows.
+    fn owns_depth(&self) -> bool {
+        false
+    }
+
     /// Draws: `record` fills one pass.
     ///
     /// # Errors

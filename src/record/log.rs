@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::chunk::RecordedView;
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::query::{Answer, DrawTime, KeptAnswer, QueryBackend, Sweep, Ticket, Wait, Want};
@@ -10,6 +11,10 @@ use crate::scene::ObjectRef;
 /// The questions of a frame, in short, and the answers, delivery by delivery.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Log {
+    /// Whether the backend owned its depth.
+    pub(super) owns_depth: bool,
+    /// The earlier frame whose depth the questions saw.
+    pub(super) past: Option<RecordedView>,
     pub(super) asked: Asked,
     /// One for each time that answers were called for.
     pub(super) deliveries: Vec<Delivery>,
@@ -81,9 +86,22 @@ impl<B: QueryBackend> QueryBackend for Logged<B> {
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
         if let Some(log) = &mut self.log {
-            *log = Log::default();
+            *log = Log { owns_depth: self.backend.owns_depth(), ..Log::default() };
         }
         self.backend.begin(view)
+    }
+
+    fn begin_late(&mut self, view: &View, frames: u32) -> Result<Option<View>, Error> {
+        let past = self.backend.begin_late(view, frames)?;
+        if let Some(log) = &mut self.log {
+            let past = past.as_ref().map(RecordedView::new);
+            *log = Log { owns_depth: self.backend.owns_depth(), past, ..Log::default() };
+        }
+        Ok(past)
+    }
+
+    fn owns_depth(&self) -> bool {
+        self.backend.owns_depth()
     }
 
     fn draw(&mut self, record: impl FnOnce(&mut B::Pass)) -> Result<(), Error> {

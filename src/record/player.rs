@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::Read;
 
-use super::chunk::{self, Digest, Frame, Header, failed};
+use super::chunk::{self, Digest, Frame, Header, RecordedView, failed};
 use super::log::{Asked, Delivery};
 use crate::geom::{Proxy, View};
 use crate::policy::{self, Gated, Policy};
@@ -115,7 +115,13 @@ impl<R: Read> Player<R> {
             eye.cut();
         }
         eye.set_costs(frame.costs);
+        // Time ran out then after so many questions. Now it may not.
+        if eye.tradeoff.budget.time.take().is_some() {
+            eye.tradeoff.budget.queries = Some(frame.log.asked.questions);
+        }
         backend.asked = Asked::default();
+        backend.owns_depth = frame.log.owns_depth;
+        backend.past = frame.log.past.as_ref().map(RecordedView::view).transpose()?;
         backend.deliveries = frame.log.deliveries.into();
         let (stats, error) = match eye.frame(scene, &view, backend, |(), _| {}) {
             Ok(stats) => (stats, None),
@@ -149,6 +155,8 @@ fn unknown(error: Error) -> Error {
 /// Draws nothing, and answers what was answered before.
 #[derive(Debug, Default)]
 struct Replay {
+    owns_depth: bool,
+    past: Option<View>,
     asked: Asked,
     deliveries: VecDeque<Delivery>,
 }
@@ -166,6 +174,14 @@ impl QueryBackend for Replay {
 
     fn begin(&mut self, _: &View) -> Result<(), Error> {
         Ok(())
+    }
+
+    fn begin_late(&mut self, _: &View, _: u32) -> Result<Option<View>, Error> {
+        Ok(self.past.take())
+    }
+
+    fn owns_depth(&self) -> bool {
+        self.owns_depth
     }
 
     fn draw(&mut self, record: impl FnOnce(&mut ())) -> Result<(), Error> {

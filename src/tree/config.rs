@@ -7,6 +7,7 @@ use crate::dial::{self, Dial};
 /// (Kovalčík & Tobola 2005, *TightBoxes*). The box of a straddle child is always tight: its cell
 /// is its parent's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub enum TightBoxes {
     /// Never: the cell.
     Never,
@@ -224,7 +225,7 @@ const AXES: &[(&str, SplitAxis)] = &[("longest", SplitAxis::Longest), ("view", S
 const PLANES: &[(&str, SplitPlane)] = &[("middle", SplitPlane::Middle), ("sah", SplitPlane::SurfaceArea)];
 const STRADDLERS: &[(&str, Straddlers)] =
     &[("leaf", Straddlers::Leaf), ("split", Straddlers::Split), ("parent", Straddlers::StayInParent)];
-const TIGHT_BOXES: &[(&str, TightBoxes)] =
+pub(crate) const TIGHT_BOXES: &[(&str, TightBoxes)] =
     &[("never", TightBoxes::Never), ("settled", TightBoxes::Settled), ("always", TightBoxes::Always)];
 
 impl Default for TreeConfig {

@@ -27,6 +27,7 @@ mod visit;
 
 pub use adapt::{Vote, Votes};
 pub use block::{Block, LANES};
+pub(crate) use config::TIGHT_BOXES;
 pub use config::{LeafSize, SplitAxis, SplitPlane, Straddlers, TightBoxes, TreeConfig};
 pub use log::Edit;
 pub(crate) use log::EditLog;

@@ -11,6 +11,11 @@ impl Tree {
         self.tick.wrapping_sub(self.nodes.moved_at[node.index()]) >= self.config.settle_frames
     }
 
+    /// Whether something in or below a node has moved or entered in the last so many updates.
+    pub(crate) fn has_moved_within(&self, node: NodeId, updates: u32) -> bool {
+        self.tick.wrapping_sub(self.nodes.moved_at[node.index()]) < updates
+    }
+
     /// The box that a question about a node asks: it holds every object in the node and below.
     pub fn query_box(&self, node: NodeId) -> Aabb {
         let n = node.index();

@@ -97,6 +97,7 @@ impl Script {
             frame: self.frame,
             tradeoff: &self.tradeoff,
             costs: Costs::default(),
+            past: None,
         };
         let (mut told, mut open, mut steps) = (String::new(), Vec::new(), 0);
         let mut tell = |what: &str| write!(told, "{}{what}", if told.is_empty() { "" } else { ", " });

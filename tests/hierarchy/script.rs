@@ -59,6 +59,7 @@ impl Row {
             frame: self.frame,
             tradeoff: &self.tradeoff,
             costs: Costs::default(),
+            past: None,
         };
         let (mut told, mut open) = (Vec::new(), Vec::new());
         self.policy.begin(&cx);

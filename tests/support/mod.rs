@@ -64,9 +64,25 @@ where
     P: Policy,
     B: QueryBackend<Pass = SoftwarePass> + Shown,
 {
+    run_with(Tradeoff::EXACT, stage, tree, policy, backend, frames)
+}
+
+/// The same with a tradeoff. With a coarser depth, all samples count as wrong.
+pub fn run_with<P, B>(
+    tradeoff: Tradeoff,
+    stage: &mut Stage,
+    tree: TreeConfig,
+    policy: P,
+    backend: &mut B,
+    frames: u32,
+) -> Outcome
+where
+    P: Policy,
+    B: QueryBackend<Pass = SoftwarePass> + Shown,
+{
     let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
     let mut eye = Culler::new(policy);
-    eye.tradeoff = Tradeoff::EXACT;
+    eye.tradeoff = tradeoff;
     let mut reference = Culler::new(StopAndWait::default());
     let mut reference_queries = SoftwareQueries::new();
     let mut oracle = Oracle::new();

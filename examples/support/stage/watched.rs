@@ -57,6 +57,15 @@ impl<B> Watched<B> {
     }
 }
 
+impl<B> Watched<B> {
+    fn forget(&mut self) {
+        if let Some(log) = &mut self.log {
+            log.asked.clear();
+            log.ranges.clear();
+        }
+    }
+}
+
 impl<B: QueryBackend> QueryBackend for Watched<B> {
     type Pass = B::Pass;
 
@@ -69,11 +78,17 @@ impl<B: QueryBackend> QueryBackend for Watched<B> {
     }
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
-        if let Some(log) = &mut self.log {
-            log.asked.clear();
-            log.ranges.clear();
-        }
+        self.forget();
         self.backend.begin(view)
+    }
+
+    fn begin_late(&mut self, view: &View, frames: u32) -> Result<Option<View>, Error> {
+        self.forget();
+        self.backend.begin_late(view, frames)
+    }
+
+    fn owns_depth(&self) -> bool {
+        self.backend.owns_depth()
     }
 
     fn draw(&mut self, record: impl FnOnce(&mut B::Pass)) -> Result<(), Error> {

@@ -2,7 +2,6 @@
 
 use std::collections::VecDeque;
 
-use tercet::Culler;
 use tercet::draw::Detail;
 use tercet::geom::{Aabb, View, Viewport};
 use tercet::scene::{Scene, SceneConfig};
@@ -58,7 +57,7 @@ impl Engine {
         let (detail, tree) = (flags.detail()?, flags.tree()?);
         Ok(Self {
             scene: Scene::new(SceneConfig { tree: tree.clone(), ..Default::default() }),
-            eye: Culler::new(flags.policy()?),
+            eye: flags.eye()?,
             stage,
             reference: Reference::new(Painter { detail }, false),
             records: VecDeque::with_capacity(REMEMBERED),
@@ -89,7 +88,7 @@ impl Engine {
     /// on it as far as it has them.
     pub fn use_policy(&mut self, name: &str) -> anyhow::Result<()> {
         let flags = Flags { policy: name.to_owned(), ..self.flags.clone() };
-        self.eye = Culler::new(flags.policy()?);
+        self.eye = flags.eye()?;
         Ok(())
     }
 

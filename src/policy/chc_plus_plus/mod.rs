@@ -314,7 +314,7 @@ impl ChcPlusPlus {
                     self.coherence.assume_visible(
                         cx,
                         front.node,
-                        sampling::soon(front.node, cx.frame, self.n_av),
+                        sampling::soon(front.node, cx.frame, self.n_av(cx)),
                     );
                 }
                 return self.coherence.take_as_visible(cx, front);
@@ -348,7 +348,7 @@ impl ChcPlusPlus {
         let proxies = &mut self.queues.proxies;
         let first = proxies.len();
         for aabb in self.volume.of(cx.tree, node, Limits { d_max, s_max: self.s_max }) {
-            match Question::new(&aabb, cx.view) {
+            match cx.question_about(node, &aabb) {
                 Question::Outside => {}
                 Question::Visible => {
                     proxies.truncate(first);
@@ -360,7 +360,7 @@ impl ChcPlusPlus {
         if proxies.len() > first {
             return Boxes::Ask(first..proxies.len());
         }
-        if Question::new(&cx.tree.query_box(node), cx.view) != Question::Outside {
+        if cx.question(node) != Question::Outside {
             // Whoever asks about the node's fate asks about its one box.
             self.coherence.found_hidden(cx, node);
         }
@@ -389,15 +389,20 @@ impl ChcPlusPlus {
         any
     }
 
+    fn n_av(&self, cx: &Context<'_>) -> u32 {
+        cx.tradeoff.n_av.unwrap_or(self.n_av)
+    }
+
     fn found_visible(&mut self, cx: &Context<'_>, front: Front, was_visible: bool, answer: Answer<'_>) {
-        let sampling = Sampling { n_av: self.n_av, randomised: self.randomised };
+        let n_av = self.n_av(cx);
+        let sampling = Sampling { n_av, randomised: self.randomised };
         let leaf = sampling.term(front.node, cx.frame, !was_visible);
         // Its children cost little in the questions of others; it alone would spoil them, over and over.
         // The more often in vain, the longer it stays open.
         let inner = match (self.multiqueries, self.regroup) {
             (false, _) => 0,
-            (true, false) => self.n_av.saturating_sub(1),
-            (true, true) => (self.n_av << self.coherence.streak(front.node).min(3)).saturating_sub(1),
+            (true, false) => n_av.saturating_sub(1),
+            (true, true) => (n_av << self.coherence.streak(front.node).min(3)).saturating_sub(1),
         };
         self.coherence.found_visible(cx, front.node, Terms { leaf, inner }.after(answer));
         if !was_visible {

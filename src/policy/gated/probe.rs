@@ -73,7 +73,7 @@ impl Probe {
             let Some(&(node, weight, sum)) = self.parts.get(part) else { continue };
             let left = ((sum - at) * if weight == Weight::Half { 2.0 } else { 1.0 }) as usize;
             let Some(aabb) = object(cx.tree, node, left) else { continue };
-            match Question::new(&aabb, cx.view) {
+            match cx.question_about(node, &aabb) {
                 Question::Outside => {}
                 Question::Visible => self.all += 1,
                 Question::Ask(proxy) => {

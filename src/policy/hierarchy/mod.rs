@@ -267,7 +267,7 @@ impl Hierarchy {
             self.open(cx, front, Record::default());
             return None;
         }
-        let proxy = match Question::new(&cx.tree.query_box(front.node), cx.view) {
+        let proxy = match cx.question(front.node) {
             Question::Outside => return None,
             Question::Visible => {
                 self.found_visible(cx, front, Class::Partial);
@@ -281,7 +281,7 @@ impl Hierarchy {
         }
         if let Some(last) = last.filter(|last| last.class != Class::Invisible)
             && self.coherence >= Coherence::Conservative
-            && self.dice.random::<f32>() < self.p_skip
+            && self.dice.random::<f32>() < cx.tradeoff.p_skip.unwrap_or(self.p_skip)
         {
             self.counts.skipped_tests += 1;
             self.take_as_visible(cx, front, Record { class: last.class, ..Record::default() });

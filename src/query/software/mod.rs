@@ -11,6 +11,7 @@
 //! | `compact` | small meshes that cover few pixels, all at once |
 //! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
 //! | `count` | answers to questions |
+//! | `kept_frames` | depths of earlier frames, for late questions |
 //! | `sweep` | answers to sweeps, object by object |
 //! | `visibility` | who owns each pixel of a finished frame |
 //! | `isa`, `level`, `simd` | sixteen lanes, for each instruction set |
@@ -23,6 +24,7 @@ mod depth;
 mod footprint;
 mod hi_z;
 mod isa;
+mod kept_frames;
 mod large;
 mod layout;
 mod level;
@@ -57,6 +59,7 @@ use crate::scene::ObjectRef;
 use bands::Bands;
 use depth::Depth;
 use hi_z::HiZ;
+use kept_frames::{KeptFrame, KeptFrames};
 use sweep::{Owned, Sweeps};
 
 /// Counters since [`QueryBackend::begin`].
@@ -104,6 +107,11 @@ pub struct SoftwareQueries {
     found: Vec<Found>,
     /// Questions of `asked` from here on are not answered yet.
     answered: usize,
+    kept: KeptFrames,
+    /// How many frames ago that depth was that questions see; 0 for this frame's.
+    late: usize,
+    /// Whether this frame's depth is to be kept.
+    keeps: bool,
     sweeps: Sweeps,
     owned: Owned,
     stats: SoftwareStats,
@@ -147,6 +155,9 @@ impl SoftwareQueries {
             proxies: Vec::new(),
             found: Vec::new(),
             answered: 0,
+            kept: KeptFrames::default(),
+            late: 0,
+            keeps: false,
             sweeps: Sweeps::default(),
             owned: Owned::default(),
             stats: SoftwareStats::default(),
@@ -168,9 +179,10 @@ impl SoftwareQueries {
         self.stats
     }
 
-    /// Memory held by the depth buffer and its hierarchy, in bytes.
+    /// Memory held by the depth buffer and its hierarchy, in bytes; by those of earlier frames, too, if
+    /// questions are late.
     pub fn bytes(&self) -> usize {
-        self.depth.bytes() + self.hi_z.bytes()
+        self.depth.bytes() + self.hi_z.bytes() + self.kept.bytes()
     }
 
     /// Draws into the depth of the frame that has begun.
@@ -191,14 +203,31 @@ impl SoftwareQueries {
         }
     }
 
-    /// Answers everything asked so far, against the depth as it is now.
+    /// Takes a frame's size; what the last one held is gone.
+    fn start(&mut self, view: &View) {
+        let (viewport, cleared) = (view.viewport(), view.depth().cleared());
+        self.depth.reset(viewport.width, viewport.height, cleared);
+        self.hi_z.reset(&self.depth, cleared);
+        self.view = Some(view.clone());
+        self.late = 0;
+        self.forget();
+        self.owned.clear();
+        self.stats = SoftwareStats::default();
+    }
+
+    /// Answers everything asked so far, against the depth as it is now, or as it was.
     fn answer(&mut self) {
         if self.answered == self.asked.len() || self.view.is_none() {
             return;
         }
-        self.depth.settle();
-        self.hi_z.refresh(self.simd, &self.depth);
-        let scene = count::Scene { depth: &self.depth, hi_z: &self.hi_z };
+        let scene = match self.kept.ago(self.late).filter(|_| self.late > 0) {
+            Some(past) => count::Scene { depth: &past.depth, hi_z: &past.hi_z },
+            None => {
+                self.depth.settle();
+                self.hi_z.refresh(self.simd, &self.depth);
+                count::Scene { depth: &self.depth, hi_z: &self.hi_z }
+            }
+        };
         let (simd, proxies) = (self.simd, &self.proxies);
         let first = self.found.len();
         self.found.resize(proxies.len(), Found::default());
@@ -232,14 +261,29 @@ impl QueryBackend for SoftwareQueries {
     }
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
-        let (viewport, cleared) = (view.viewport(), view.depth().cleared());
-        self.depth.reset(viewport.width, viewport.height, cleared);
-        self.hi_z.reset(&self.depth, cleared);
-        self.view = Some(view.clone());
-        self.forget();
-        self.owned.clear();
-        self.stats = SoftwareStats::default();
+        self.kept.clear();
+        self.keeps = false;
+        self.start(view);
         Ok(())
+    }
+
+    fn begin_late(&mut self, view: &View, frames: u32) -> Result<Option<View>, Error> {
+        let late = frames.max(1) as usize;
+        if let (true, Some(last)) = (self.keeps, self.view.take()) {
+            let (depth, hi_z) = (std::mem::take(&mut self.depth), std::mem::take(&mut self.hi_z));
+            let kept = KeptFrame { view: Some(last), depth, hi_z };
+            let spare = self.kept.keep(kept, late, self.simd);
+            (self.depth, self.hi_z) = (spare.depth, spare.hi_z);
+        }
+        self.keeps = true;
+        self.start(view);
+        let past = self.kept.ago(late).and_then(|past| past.view.clone());
+        self.late = if past.is_some() { late } else { 0 };
+        Ok(past)
+    }
+
+    fn owns_depth(&self) -> bool {
+        true
     }
 
     fn draw(&mut self, record: impl FnOnce(&mut SoftwarePass)) -> Result<(), Error> {

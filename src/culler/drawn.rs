@@ -1,0 +1,155 @@
+//! The render queue of a frame, and the lists of what was drawn.
+
+use super::timed;
+use crate::Error;
+use crate::geom::{Frustum, PlaneMask};
+use crate::policy::{Context, Extent};
+use crate::query::QueryBackend;
+use crate::scene::{ObjectId, ObjectRef, Scene};
+use crate::stats::FrameStats;
+use crate::tree::NodeId;
+
+/// The render queue, and the lists of what it has drawn.
+#[derive(Debug, Default)]
+pub(super) struct DrawnList {
+    /// To be drawn with the next flush.
+    queue: Vec<ObjectRef>,
+    /// No occluders: to be drawn last.
+    late: Vec<ObjectRef>,
+    pub(super) visible: Vec<ObjectRef>,
+    pub(super) entered: Vec<ObjectRef>,
+    previous: Vec<ObjectRef>,
+    /// By slot: which object was last drawn, and in which frame.
+    last_drawn: Vec<(u32, u32)>,
+    frame: u32,
+    /// Whether the backend is to know whose draws are whose.
+    pub(super) owned: bool,
+}
+
+impl DrawnList {
+    /// Whether next to nothing of what was drawn in the last frame is in view now. O(1): a few objects
+    /// speak for all.
+    pub(super) fn is_cut(&self, scene: &Scene, frustum: &Frustum) -> bool {
+        let step = self.visible.len().div_ceil(CUT_SAMPLES).max(1);
+        let (mut seen, mut still) = (0, 0);
+        for object in self.visible.iter().step_by(step) {
+            // What is drawn always, or is gone, says nothing about the view.
+            if let Some(aabb) = scene.object(object.id).and_then(|object| object.bounds) {
+                seen += 1;
+                still += usize::from(frustum.intersects(&aabb));
+            }
+        }
+        seen >= CUT_SAMPLES / 4 && still * CUT_SHARE < seen
+    }
+
+    /// Starts anew: everything drawn next has entered, and nothing has left.
+    pub(super) fn forget(&mut self) {
+        self.visible.clear();
+        self.previous.clear();
+        self.entered.clear();
+        self.last_drawn.clear();
+    }
+
+    pub(super) fn begin(&mut self, scene: &Scene, frame: u32) {
+        self.frame = frame;
+        self.queue.clear();
+        self.late.clear();
+        self.entered.clear();
+        std::mem::swap(&mut self.visible, &mut self.previous);
+        self.visible.clear();
+        let bound = scene.slot_bound().max(self.last_drawn.len());
+        self.last_drawn.resize(bound, (0, 0));
+    }
+
+    /// Queues an object, unless it was queued in this frame before.
+    pub(super) fn queue(&mut self, scene: &Scene, slot: u32) {
+        let store = scene.objects_store();
+        let object = store.object(slot);
+        let last = &mut self.last_drawn[slot as usize];
+        let (generation, frame) = std::mem::replace(last, (object.id.generation(), self.frame));
+        if frame == self.frame {
+            return;
+        }
+        if generation != object.id.generation() || frame == 0 || frame != self.frame.wrapping_sub(1) {
+            self.entered.push(object);
+        }
+        let list = if store.is_occluder(slot) { &mut self.queue } else { &mut self.late };
+        list.push(object);
+    }
+
+    pub(super) fn queue_objects(&mut self, scene: &Scene, objects: &[ObjectId]) {
+        for &id in objects {
+            if let Some(slot) = scene.objects_store().slot(id) {
+                self.queue(scene, slot);
+            }
+        }
+    }
+
+    pub(super) fn queue_node(
+        &mut self,
+        scene: &Scene,
+        cx: &Context<'_>,
+        stack: &mut Vec<(NodeId, PlaneMask)>,
+        node: NodeId,
+        extent: Extent,
+    ) {
+        let planes = if extent == Extent::Everything { PlaneMask::NONE } else { PlaneMask::ALL };
+        stack.push((node, planes));
+        while let Some((node, mask)) = stack.pop() {
+            if cx.tree.count(node) == 0 {
+                continue;
+            }
+            let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), mask) else { continue };
+            for (block, lane) in cx.tree.own_inside(node, cx.frustum, mask) {
+                self.queue(scene, block.slots[lane]);
+            }
+            if extent != Extent::Own {
+                let children = cx.tree.children(node).into_iter().flatten();
+                stack.extend(children.map(|child| (child, mask)));
+            }
+        }
+    }
+
+    /// Draws what is queued; true if there was something.
+    pub(super) fn flush<B: QueryBackend>(
+        &mut self,
+        queries: &mut B,
+        draw: &mut impl FnMut(&mut B::Pass, &[ObjectRef]),
+        stats: &mut FrameStats,
+    ) -> Result<bool, Error> {
+        if self.queue.is_empty() {
+            return Ok(false);
+        }
+        stats.draw += timed(|| match self.owned {
+            true => queries.draw_objects(&self.queue, &mut *draw),
+            false => queries.draw(|pass| draw(pass, &self.queue)),
+        })?;
+        self.visible.append(&mut self.queue);
+        Ok(true)
+    }
+
+    /// Draws what hides nothing, after everything else.
+    pub(super) fn flush_late<B: QueryBackend>(
+        &mut self,
+        queries: &mut B,
+        draw: &mut impl FnMut(&mut B::Pass, &[ObjectRef]),
+        stats: &mut FrameStats,
+    ) -> Result<bool, Error> {
+        std::mem::swap(&mut self.queue, &mut self.late);
+        self.flush(queries, draw, stats)
+    }
+
+    pub(super) fn left(&self) -> impl Iterator<Item = ObjectRef> {
+        self.previous.iter().copied().filter(|object| !self.has(object.id))
+    }
+
+    /// Whether an object was drawn in the last frame.
+    pub(super) fn has(&self, id: ObjectId) -> bool {
+        self.last_drawn.get(id.slot()) == Some(&(id.generation(), self.frame))
+    }
+}
+
+/// Objects of the last frame that are looked at for a cut.
+const CUT_SAMPLES: usize = 64;
+/// A cut leaves less than one in so many of them in view.
+const CUT_SHARE: usize = 16;
