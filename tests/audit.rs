@@ -21,7 +21,7 @@ use tercet::query::oracle::Oracle;
 use tercet::query::software::{SoftwarePass, SoftwareQueries, VisibilityImage};
 use tercet::scene::mesh::Mesh;
 use tercet::scene::{Bounds, ObjectId, ObjectRef, Scene, SceneConfig, Traits};
-use tercet::{Culler, Error, Tradeoff, Why, worlds};
+use tercet::{Culler, Error, Latency, Tradeoff, Why, worlds};
 
 const SCREEN: Viewport = Viewport::new(160, 90);
 const FRAMES: u32 = 14;
@@ -97,7 +97,11 @@ impl<B: QueryBackend<Pass = SoftwarePass> + Shown> Watch<B> {
         let ids = scene.objects().map(|o| o.object.id);
         let lost = ids.filter(|&id| truth.exact.contains(id) && !drawn.contains(&id));
         let mut lost: HashMap<ObjectId, u32> = lost.map(|id| (id, 0)).collect();
-        let (image, depth) = (oracle.image(), self.queries.shown().depth());
+        // At full resolution, whatever the questions were put to.
+        let mut shown = SoftwareQueries::new();
+        shown.begin(view).expect("a frame");
+        shown.draw(|pass| draw(world, view, *detail, pass, eye.visible())).expect("a pass");
+        let (image, depth) = (oracle.image(), shown.depth());
         let mut wrong = 0;
         for y in 0..image.height {
             for x in 0..image.width {
@@ -231,6 +235,52 @@ fn frames_that_are_not_due_are_left_alone() {
     }
     assert_eq!(checked, [4, 8]);
     assert_eq!((auditor.estimate().frames, auditor.last().map(|audit| audit.frame)), (2, Some(8)));
+}
+
+/// Runs with dials that each lose something, and returns how much each is blamed for. The names of what is
+/// lost are compared with what should be.
+fn blamed(name: &str, tradeoff: Tradeoff, coarse: u32) -> HashMap<Blame, u64> {
+    let mut all = HashMap::new();
+    for seed in 0..6 {
+        let auditor = Watch::new(name, seed, tradeoff, SoftwareQueries::new()).run(|watch, audit| {
+            assert_eq!(watch.queries.shown().depth().width(), SCREEN.width / coarse);
+            let (lost, wrong) = watch.expected();
+            let reported: HashMap<ObjectId, u32> =
+                audit.lost.iter().map(|lost| (lost.object.id, lost.samples)).collect();
+            assert_eq!((reported, audit.wrong_pixels), (lost, wrong), "{name}, seed {seed}");
+        });
+        auditor.blamed().for_each(|(blame, lost)| *all.entry(blame).or_default() += lost);
+    }
+    all
+}
+
+#[test]
+fn a_coarse_depth_is_blamed() {
+    for name in ["dual-query", "chc++", "roc", "hroc"] {
+        let tradeoff = Tradeoff { resolution_divisor: 4, ..Tradeoff::EXACT };
+        let blamed = blamed(name, tradeoff, 4);
+        assert!(blamed[&Blame::Dial("resolution_divisor")] > 10 && blamed.len() == 1, "{name}: {blamed:?}");
+    }
+}
+
+#[test]
+fn late_questions_are_blamed() {
+    for name in ["dual-query", "chc", "statistical"] {
+        let tradeoff = Tradeoff { latency: Latency::Late(2), ..Tradeoff::EXACT };
+        let blamed = blamed(name, tradeoff, 1);
+        assert!(blamed[&Blame::Dial("latency")] > 10 && blamed.len() == 1, "{name}: {blamed:?}");
+    }
+}
+
+#[test]
+fn of_several_dials_each_gets_its_share() {
+    let (latency, visible_pixels) = (Latency::Late(2), 12);
+    let tradeoff = Tradeoff { latency, visible_pixels, resolution_divisor: 2, ..Tradeoff::EXACT };
+    let blamed = blamed("dual-query", tradeoff, 2);
+    for key in ["visible_pixels", "resolution_divisor", "latency"] {
+        assert!(blamed.get(&Blame::Dial(key)).is_some_and(|&lost| lost > 5), "{key}: {blamed:?}");
+    }
+    assert_eq!(blamed.len(), 3, "{blamed:?}");
 }
 
 /// A square of side 2 that faces the camera.

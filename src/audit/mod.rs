@@ -75,7 +75,7 @@ impl Auditor {
     ///
     /// To be called with that frame's view and [`Culler::tradeoff`], before the scene is edited or
     /// adapted: later it may not be known any more why an object was culled, and what has moved
-    /// since would be called lost. `draw` is called once an object, and twice with what was drawn.
+    /// since would be called lost. `draw` is called once an object, and two or three times with what was drawn.
     ///
     /// O(1), and no allocation, in a frame that is not due.
     ///
@@ -197,7 +197,8 @@ impl Auditor {
         }
     }
 
-    /// Draws what the culler drew, and asks about the boxes that decided when all that hides is there.
+    /// Draws what the culler drew, and asks about the boxes that decided when all that hides is there: at
+    /// the resolution that the culler asked at, and at that of the view.
     fn ask_again<P: Policy>(
         &mut self,
         scene: &Scene,
@@ -209,33 +210,58 @@ impl Auditor {
         // What hides nothing was drawn after all questions.
         let late = eye.visible().iter().position(|object| !hides(object)).unwrap_or(eye.visible().len());
         let (occluders, late) = eye.visible().split_at(late);
+        let decided = |lost: &FalseCull| lost.why.node().map(|node| node.bounds).or(lost.bounds);
+        if eye.divisor() > 1 && !self.audit.lost.is_empty() {
+            let counts = eye.tradeoff.at_resolution(eye.divisor()).visible_pixels > 0;
+            let asked = |lost: &FalseCull| if counts { decided(lost) } else { lost.bounds };
+            let coarse = view.coarsened(eye.divisor());
+            let draw = |pass: &mut SoftwarePass| draw(pass, occluders);
+            self.recount(&coarse, draw, asked, |suspect| suspect.coarse.insert(Recount::Visible))?;
+        }
+        self.recount(view, |pass| draw(pass, occluders), decided, |suspect| &mut suspect.full)?;
+        self.queries.draw(|pass| draw(pass, late))?;
+        self.queries.end()?;
+        self.audit.wrong_pixels = self.oracle.wrong_pixels(&self.queries);
+        Ok(())
+    }
+
+    /// Draws what hides, and counts what is in sight of a box of each suspect.
+    fn recount(
+        &mut self,
+        view: &View,
+        draw: impl FnOnce(&mut SoftwarePass),
+        which: impl Fn(&FalseCull) -> Option<Aabb>,
+        count: impl Fn(&mut Suspect) -> &mut Recount,
+    ) -> Result<(), Error> {
         let Self { queries, suspects, audit, .. } = self;
         queries.begin(view)?;
-        queries.draw(|pass| draw(pass, occluders))?;
+        queries.draw(draw)?;
         for (number, (lost, suspect)) in audit.lost.iter().zip(&mut suspects.all).enumerate() {
-            let decided = lost.why.node().map(|node| node.bounds).or(lost.bounds);
-            match decided.map_or(Question::Visible, |bounds| Question::new(&bounds, view)) {
-                Question::Outside => suspect.recount = Recount::Outside,
-                Question::Visible => suspect.recount = Recount::Visible,
+            match which(lost).map_or(Question::Visible, |bounds| Question::new(&bounds, view)) {
+                Question::Outside => *count(suspect) = Recount::Outside,
+                Question::Visible => *count(suspect) = Recount::Visible,
                 Question::Ask(proxy) => queries.ask(Ticket(number as u32), &[proxy], Want::Dual)?,
             }
         }
         queries.answers(Wait::Block, |Ticket(number), answer| {
             if let Answer::Dual { visible, total } = answer {
-                suspects.all[number as usize].recount = Recount::Counted(Samples { visible, total });
+                *count(&mut suspects.all[number as usize]) = Recount::Counted(Samples { visible, total });
             }
-        })?;
-        queries.draw(|pass| draw(pass, late))?;
-        queries.end()?;
-        audit.wrong_pixels = self.oracle.wrong_pixels(queries);
-        Ok(())
+        })
     }
 
     fn judge<P: Policy>(&mut self, eye: &Culler<P>) {
         for (lost, suspect) in self.audit.lost.iter_mut().zip(&self.suspects.all) {
-            let (leaves_box, recount) = (suspect.leaves_box, suspect.recount);
-            lost.recount = recount.samples();
-            lost.blame = Evidence { why: lost.why, leaves_box, recount }.blame(&eye.tradeoff);
+            let evidence = Evidence {
+                why: lost.why,
+                leaves_box: suspect.leaves_box,
+                full: suspect.full,
+                as_asked: suspect.coarse.unwrap_or(suspect.full),
+                divisor: eye.divisor(),
+                was_late: eye.was_late(),
+            };
+            lost.recount = suspect.full.samples();
+            lost.blame = evidence.blame(&eye.tradeoff);
         }
     }
 }
@@ -255,7 +281,10 @@ struct Suspect {
     /// Whether no part of the box owns a sample.
     is_outside: bool,
     leaves_box: bool,
-    recount: Recount,
+    /// What is in sight of the box that decided.
+    full: Recount,
+    /// The same at the coarser resolution that the culler asked at, if it is one.
+    coarse: Option<Recount>,
 }
 
 impl Suspects {
@@ -270,7 +299,7 @@ impl Suspects {
             Question::Ask(proxy) => (Some(proxy), false),
             question => (None, question == Question::Outside),
         };
-        self.all.push(Suspect { proxy, is_outside, leaves_box: false, recount: Recount::Visible });
+        self.all.push(Suspect { proxy, is_outside, leaves_box: false, full: Recount::Visible, coarse: None });
         self.number[slot] = self.all.len() as u32;
     }
 

@@ -75,6 +75,6 @@ impl fmt::Display for FalseCull {
         if let Some(samples) = self.recount {
             write!(f, "; asked again, {samples}")?;
         }
-        write!(f, ". {}", self.blame)
+        write!(f, "; to blame: {}", self.blame)
     }
 }
