@@ -136,7 +136,7 @@ fn what_is_exact_loses_nothing() {
                 culled += audit.culled;
             });
             let estimate = auditor.estimate();
-            assert_eq!((estimate.frames, estimate.lost, estimate.wrong.mean), (FRAMES, 0, 0.0));
+            assert_eq!((estimate.frames, estimate.lost, estimate.wrong_share.mean), (FRAMES, 0, 0.0));
             assert!((estimate.lossy_frames.high - (1.0 - 0.05f64.powf(1.0 / 14.0))).abs() < 1e-9);
             assert!(estimate.to_string().starts_with("14 frames checked, nothing lost"), "{estimate}");
             assert_eq!(auditor.blamed().count(), 0);
@@ -173,8 +173,8 @@ fn what_a_threshold_loses_is_reported_to_the_sample() {
             });
             let estimate = auditor.estimate();
             assert_eq!(estimate.lost, sum);
-            assert!((estimate.wrong.mean - wrong_shares.iter().sum::<f64>() / 14.0).abs() < 1e-12);
-            assert_eq!(estimate.worst_wrong, wrong_shares.into_iter().fold(0.0, f64::max));
+            assert!((estimate.wrong_share.mean - wrong_shares.iter().sum::<f64>() / 14.0).abs() < 1e-12);
+            assert_eq!(estimate.worst_wrong_share, wrong_shares.into_iter().fold(0.0, f64::max));
             let blamed: Vec<_> = auditor.blamed().collect();
             assert_eq!(blamed, if sum > 0 { vec![(Blame::Dial("visible_pixels"), sum)] } else { vec![] });
             all += sum;

@@ -7,8 +7,10 @@
 //! [`Share`] are the μ at which that is 1/20. Where nothing was seen (x = 0) the upper end is
 //! 1 − 20^(−1/n), just below 3/n: the *rule of three*.
 //!
-//! The price of asking nothing of the distribution is width: a hundred frames that are all a little wrong
-//! do not show that none is wrong altogether. And frames are not quite independent: neighbours look alike.
+//! The price of asking nothing of the distribution is width: ten frames that are a little wrong do not show
+//! that none is wrong altogether. So one thing is asked of it: that no frame has [`BEYOND`] times as
+//! many wrong pixels as the worst that was checked, if that has any. Shares of that are numbers from 0
+//! to 1 again. And frames are not quite independent: neighbours look alike.
 //! Frames that are checked a second apart say more than as many in a row, for which the interval is
 //! too narrow.
 
@@ -20,8 +22,12 @@ use super::{Audit, Blame};
 /// The probability that the truth lies beyond one end of an interval, at most; the same for the other.
 const DOUBT: f64 = 0.05;
 
+/// How much worse a frame may be than the worst that was checked.
+const BEYOND: f64 = 10.0;
+
 /// A mean of what lies between 0 and 1, and where the true one lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct Share {
     /// The mean of the checked frames.
     pub mean: f64,
@@ -33,15 +39,17 @@ pub struct Share {
 
 /// The running estimate of the error.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "record", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimate {
     /// Frames checked so far.
     pub frames: u32,
     /// The share of frames in which an object was lost.
     pub lossy_frames: Share,
-    /// The share of a frame's pixels that are wrong.
-    pub wrong: Share,
+    /// The share of a frame's pixels that are wrong; `low` and `high` hold as long as no frame is ten times
+    /// as wrong as the worst that was checked.
+    pub wrong_share: Share,
     /// The same in the worst of the checked frames.
-    pub worst_wrong: f64,
+    pub worst_wrong_share: f64,
     /// False culls in all checked frames; an object that is lost in two counts twice.
     pub lost: u64,
     /// False culls in the worst of them.
@@ -54,7 +62,7 @@ pub(super) struct Tally {
     frames: u32,
     lossy: u32,
     wrong: f64,
-    worst_wrong: f64,
+    worst_wrong_share: f64,
     lost: u64,
     worst_lost: u32,
     blamed: BTreeMap<Blame, u64>,
@@ -67,7 +75,7 @@ impl Tally {
         self.frames += 1;
         self.lossy += u32::from(lost > 0);
         self.wrong += audit.wrong_share();
-        self.worst_wrong = self.worst_wrong.max(audit.wrong_share());
+        self.worst_wrong_share = self.worst_wrong_share.max(audit.wrong_share());
         self.lost += u64::from(lost);
         self.worst_lost = self.worst_lost.max(lost);
         for lost in &audit.lost {
@@ -85,8 +93,11 @@ impl Tally {
         Estimate {
             frames: self.frames,
             lossy_frames: Share::of(f64::from(self.lossy), self.frames),
-            wrong: Share::of(self.wrong, self.frames),
-            worst_wrong: self.worst_wrong,
+            wrong_share: match (BEYOND * self.worst_wrong_share).min(1.0) {
+                0.0 => Share::of(self.wrong, self.frames),
+                most => Share::of(self.wrong / most, self.frames).times(most),
+            },
+            worst_wrong_share: self.worst_wrong_share,
             lost: self.lost,
             worst_lost: self.worst_lost,
         }
@@ -107,6 +118,12 @@ impl Share {
         let mean = (sum / n.max(1.0)).clamp(0.0, 1.0);
         let is_beyond = |bound: f64| n * divergence(mean, bound) > -DOUBT.ln();
         Self { mean, low: farthest(mean, 0.0, is_beyond), high: farthest(mean, 1.0, is_beyond) }
+    }
+}
+
+impl Share {
+    fn times(self, factor: f64) -> Self {
+        Self { mean: self.mean * factor, low: self.low * factor, high: self.high * factor }
     }
 }
 
@@ -144,8 +161,8 @@ impl fmt::Display for Estimate {
                 f,
                 "{frames} frames checked, {lost} false culls in {} of frames; pixels wrong: {}, {} % at worst",
                 self.lossy_frames,
-                self.wrong,
-                percent(self.worst_wrong)
+                self.wrong_share,
+                percent(self.worst_wrong_share)
             ),
         }
     }
@@ -217,8 +234,17 @@ mod tests {
         }
         let estimate = tally.estimate();
         assert_eq!((estimate.frames, estimate.lost, estimate.worst_lost), (4, 0, 0));
-        assert!((estimate.wrong.mean - 0.075).abs() < 1e-12 && estimate.worst_wrong == 0.2);
+        assert!((estimate.wrong_share.mean - 0.075).abs() < 1e-12 && estimate.worst_wrong_share == 0.2);
         assert_eq!(estimate.lost_per_frame(), 0.0);
+        // No frame is wrong by more than all of its pixels; if the worst is wrong by 1 %, by more than 10 %.
+        assert_eq!(estimate.wrong_share, Share::of(0.1 + 0.2, 4));
+        let mut tally = Tally::default();
+        [0, 5, 10, 0]
+            .map(|wrong_pixels| tally.add(&Audit { pixels: 1000, wrong_pixels, ..Audit::default() }));
+        let share = tally.estimate().wrong_share;
+        assert!(
+            (share.mean - 0.00375).abs() < 1e-12 && (share.high - 0.1 * Share::of(0.15, 4).high).abs() < 1e-9
+        );
     }
 
     #[test]

@@ -70,10 +70,11 @@ impl fmt::Display for FalseCull {
             let size = bounds.size();
             write!(f, " ({:.2} × {:.2} × {:.2} m)", size.x, size.y, size.z)?;
         }
-        write!(f, " owns {} samples ({:.4} %) and was not drawn", self.samples, 100.0 * self.share)?;
+        let samples = if self.samples == 1 { "sample" } else { "samples" };
+        write!(f, " owns {} {samples} ({:.4} %) and was not drawn", self.samples, 100.0 * self.share)?;
         write!(f, "; {}", self.why)?;
         if let Some(samples) = self.recount {
-            write!(f, "; asked again, {samples}")?;
+            write!(f, "; asked again, now that all is drawn, {samples}")?;
         }
         write!(f, "; to blame: {}", self.blame)
     }
