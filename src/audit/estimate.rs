@@ -173,7 +173,9 @@ fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match percent {
         p if p >= 10.0 => format!("{p:.0}"),
-        p if p >= 1.0 || p < 1e-9 => format!("{p:.1}"),
+        p if p >= 1.0 => format!("{p:.1}"),
+        0.0 => "0".to_owned(),
+        p if p < 1e-4 => "<0.0001".to_owned(),
         p => format!("{p:.*}", (1.0 - p.log10().floor()) as usize),
     }
 }
@@ -249,7 +251,7 @@ mod tests {
 
     #[test]
     fn shares_read_well() {
-        let shares = [0.0, 0.000_012_34, 0.0456, 0.0099, 0.5].map(percent);
-        assert_eq!(shares, ["0.0", "0.0012", "4.6", "0.99", "50"]);
+        let shares = [0.0, 1e-9, 0.000_012_34, 0.0456, 0.0099, 0.5].map(percent);
+        assert_eq!(shares, ["0", "<0.0001", "0.0012", "4.6", "0.99", "50"]);
     }
 }
