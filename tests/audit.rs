@@ -12,16 +12,16 @@ use glam::{Affine3A, Vec3};
 use hecs::{Entity, World};
 use lying::Lying;
 use stage::Stage;
-use tercet::audit::{Audit, Auditor, Blame};
+use tercet::audit::{Audit, Auditor, Blame, FalseCull};
 use tercet::draw::{Detail, Drawable};
-use tercet::geom::{Aabb, View, Viewport};
+use tercet::geom::{Aabb, Question, View, Viewport};
 use tercet::policy::{self, DrawAll, Policy};
-use tercet::query::QueryBackend;
 use tercet::query::oracle::Oracle;
 use tercet::query::software::{SoftwarePass, SoftwareQueries, VisibilityImage};
+use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
 use tercet::scene::mesh::Mesh;
 use tercet::scene::{Bounds, ObjectId, ObjectRef, Scene, SceneConfig, Traits};
-use tercet::{Culler, Error, Latency, Tradeoff, Why, worlds};
+use tercet::{Culler, Error, Holder, Latency, Tradeoff, Why, worlds};
 
 const SCREEN: Viewport = Viewport::new(160, 90);
 const FRAMES: u32 = 14;
@@ -83,6 +83,32 @@ impl<B: QueryBackend<Pass = SoftwarePass> + Shown> Watch<B> {
             self.scene.adapt([&mut self.eye]);
         }
         self.auditor
+    }
+
+    /// How much of a box is in sight of what was drawn and hides, at 1/`divisor` of the resolution.
+    fn in_sight(&self, aabb: &Aabb, divisor: u32) -> u32 {
+        let Self { stage: Stage { world, detail, .. }, scene, eye, view, .. } = self;
+        let coarse = view.coarsened(divisor);
+        let proxy = match Question::new(aabb, &coarse) {
+            Question::Ask(proxy) => proxy,
+            Question::Outside => return 0,
+            // It was asked about as it was seen from elsewhere.
+            Question::Visible => return u32::MAX,
+        };
+        let hides = |id: ObjectId| scene.object(id).is_some_and(|o| !o.traits.not_occluder);
+        let occluders: Vec<_> = eye.visible().iter().copied().filter(|o| hides(o.id)).collect();
+        let mut queries = SoftwareQueries::new();
+        queries.begin(&coarse).expect("a frame");
+        queries.draw(|pass| draw(world, view, *detail, pass, &occluders)).expect("a pass");
+        queries.ask(Ticket(0), &[proxy], Want::Dual).expect("a question");
+        let mut counted = None;
+        let take = |_, answer: Answer<'_>| {
+            if let Answer::Dual { visible, .. } = answer {
+                counted = Some(visible);
+            }
+        };
+        queries.answers(Wait::Block, take).expect("an answer");
+        counted.expect("a count")
     }
 
     /// The audit as it should be, by other means: what is lost, and how much it owns of the picture;
@@ -239,7 +265,12 @@ fn frames_that_are_not_due_are_left_alone() {
 
 /// Runs with dials that each lose something, and returns how much each is blamed for. The names of what is
 /// lost are compared with what should be.
-fn blamed(name: &str, tradeoff: Tradeoff, coarse: u32) -> HashMap<Blame, u64> {
+fn blamed(
+    name: &str,
+    tradeoff: Tradeoff,
+    coarse: u32,
+    each: impl Fn(&Watch<SoftwareQueries>, &FalseCull),
+) -> HashMap<Blame, u64> {
     let mut all = HashMap::new();
     for seed in 0..6 {
         let auditor = Watch::new(name, seed, tradeoff, SoftwareQueries::new()).run(|watch, audit| {
@@ -248,6 +279,7 @@ fn blamed(name: &str, tradeoff: Tradeoff, coarse: u32) -> HashMap<Blame, u64> {
             let reported: HashMap<ObjectId, u32> =
                 audit.lost.iter().map(|lost| (lost.object.id, lost.samples)).collect();
             assert_eq!((reported, audit.wrong_pixels), (lost, wrong), "{name}, seed {seed}");
+            audit.lost.iter().for_each(|lost| each(watch, lost));
         });
         auditor.blamed().for_each(|(blame, lost)| *all.entry(blame).or_default() += lost);
     }
@@ -258,7 +290,7 @@ fn blamed(name: &str, tradeoff: Tradeoff, coarse: u32) -> HashMap<Blame, u64> {
 fn a_coarse_depth_is_blamed() {
     for name in ["dual-query", "chc++", "roc", "hroc"] {
         let tradeoff = Tradeoff { resolution_divisor: 4, ..Tradeoff::EXACT };
-        let blamed = blamed(name, tradeoff, 4);
+        let blamed = blamed(name, tradeoff, 4, |_, _| {});
         assert!(blamed[&Blame::Dial("resolution_divisor")] > 10 && blamed.len() == 1, "{name}: {blamed:?}");
     }
 }
@@ -267,7 +299,7 @@ fn a_coarse_depth_is_blamed() {
 fn late_questions_are_blamed() {
     for name in ["dual-query", "chc", "statistical"] {
         let tradeoff = Tradeoff { latency: Latency::Late(2), ..Tradeoff::EXACT };
-        let blamed = blamed(name, tradeoff, 1);
+        let blamed = blamed(name, tradeoff, 1, |_, _| {});
         assert!(blamed[&Blame::Dial("latency")] > 10 && blamed.len() == 1, "{name}: {blamed:?}");
     }
 }
@@ -276,7 +308,18 @@ fn late_questions_are_blamed() {
 fn of_several_dials_each_gets_its_share() {
     let (latency, visible_pixels) = (Latency::Late(2), 12);
     let tradeoff = Tradeoff { latency, visible_pixels, resolution_divisor: 2, ..Tradeoff::EXACT };
-    let blamed = blamed("dual-query", tradeoff, 2);
+    let blamed = blamed("dual-query", tradeoff, 2, |watch, lost| {
+        let Why::Hidden(Holder { bounds: node, .. }) = lost.why else { return };
+        let (full, coarse) = (watch.in_sight(&node, 1), watch.in_sight(&node, 2));
+        assert_eq!(lost.recount.map_or(u32::MAX, |samples| samples.visible), full);
+        // Twelve pixels are three samples of a depth of half as many columns and rows.
+        let dial = match (full <= 12, coarse <= 3) {
+            (_, false) => "latency",
+            (true, true) => "visible_pixels",
+            (false, true) => "resolution_divisor",
+        };
+        assert_eq!(lost.dial(), Some(dial), "{full}, {coarse}: {lost}");
+    });
     for key in ["visible_pixels", "resolution_divisor", "latency"] {
         assert!(blamed.get(&Blame::Dial(key)).is_some_and(|&lost| lost > 5), "{key}: {blamed:?}");
     }
