@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use support::lying::Lying;
 use support::stage::Stage;
 use support::suite::{FRAMES, SCREEN, assert_culls_most, culls_hidden, dialled, is_default, outcome, trees};
-use support::{Outcome, run};
+use support::{Outcome, run, run_with};
 use tally::Tally;
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
@@ -32,6 +32,7 @@ use tercet::policy::{self, Gated};
 use tercet::query::software::SoftwareQueries;
 use tercet::tree::{SplitPlane, Straddlers, TightBoxes, TreeConfig};
 use tercet::worlds::{self, Model, Pathology};
+use tercet::{Budget, Tradeoff};
 use trusting::Trusting;
 
 #[test]
@@ -257,5 +258,45 @@ fn a_dropped_group_or_object_is_found_out() {
             let matters = groups == 1 || (loose == 1 && matches!(name, "hroc" | "hybrid"));
             assert_eq!(all.lost > 0, matters, "{name}, {groups} groups, {loose} loose: {all:?}");
         }
+    }
+}
+
+/// Policies that find out by themselves what they draw.
+fn names() -> impl Iterator<Item = &'static str> {
+    let finds_out = |name: &str| policy::by_name(name).is_ok_and(|policy| policy.wants_recorded().is_none());
+    policy::NAMES.iter().copied().filter(move |name| finds_out(name))
+}
+
+fn with_tradeoff(tradeoff: Tradeoff, name: &str, seed: u64) -> Outcome {
+    let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+    let tree = tradeoff.tree(trees()[0].clone());
+    let policy = policy::by_name(name).expect("a policy of that name");
+    run_with(tradeoff, &mut stage, tree, policy, &mut SoftwareQueries::new(), FRAMES)
+}
+
+#[test]
+fn dials_that_are_not_lossy_lose_nothing() {
+    let exact = Tradeoff::EXACT;
+    let budget = |budget: Budget| Tradeoff { budget, ..exact };
+    let tradeoffs = [
+        budget(Budget { queries: Some(5), ..Budget::default() }),
+        budget(Budget { box_pixels: Some(4000), ..Budget::default() }),
+        Tradeoff { n_av: Some(40), p_skip: Some(1.0), ..exact },
+        Tradeoff { tight_boxes: Some(TightBoxes::Never), ..exact },
+    ];
+    let runs: Vec<_> = names().flat_map(|name| tradeoffs.map(|tradeoff| (name, tradeoff))).collect();
+    let outcomes: Vec<Outcome> = runs
+        .par_iter()
+        .enumerate()
+        .map(|(seed, &(name, tradeoff))| {
+            assert!(tradeoff.is_exact());
+            let outcome = with_tradeoff(tradeoff, name, seed as u64);
+            assert_eq!(outcome.lost, 0, "{name} with {tradeoff:?}");
+            outcome
+        })
+        .collect();
+    for (n, tradeoff) in tradeoffs.iter().enumerate() {
+        let culled: usize = outcomes.iter().skip(n).step_by(tradeoffs.len()).map(|o| o.culled).sum();
+        assert!(culled > 500, "{culled} hidden objects culled with {tradeoff:?}");
     }
 }

@@ -1,60 +1,14 @@
 //! What each dial of [`Tradeoff`] gives up, and what none of them may.
 
-mod support;
-
 use glam::{Affine3A, Vec3};
-use rayon::prelude::*;
-use support::stage::Stage;
-use support::suite::{FRAMES, SCREEN, trees};
-use support::{Outcome, run_with};
 use tercet::geom::{Aabb, View, Viewport};
 use tercet::policy::{self, DualQuery, Policy, StopAndWait};
 use tercet::query::QueryBackend;
 use tercet::query::software::SoftwareQueries;
 use tercet::scene::mesh::Mesh;
 use tercet::scene::{ObjectId, Scene, SceneConfig, Traits};
-use tercet::tree::{LeafSize, TightBoxes, TreeConfig};
-use tercet::{Budget, Culler, FrameStats, Latency, Tradeoff, worlds};
-
-/// Policies that find out by themselves what they draw.
-fn names() -> impl Iterator<Item = &'static str> {
-    let finds_out = |name: &str| policy::by_name(name).is_ok_and(|policy| policy.wants_recorded().is_none());
-    policy::NAMES.iter().copied().filter(move |name| finds_out(name))
-}
-
-fn outcome(tradeoff: Tradeoff, name: &str, seed: u64) -> Outcome {
-    let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
-    let tree = tradeoff.tree(trees()[0].clone());
-    let policy = policy::by_name(name).expect("a policy of that name");
-    run_with(tradeoff, &mut stage, tree, policy, &mut SoftwareQueries::new(), FRAMES)
-}
-
-#[test]
-fn dials_that_are_not_lossy_lose_nothing() {
-    let exact = Tradeoff::EXACT;
-    let budget = |budget: Budget| Tradeoff { budget, ..exact };
-    let tradeoffs = [
-        budget(Budget { queries: Some(5), ..Budget::default() }),
-        budget(Budget { box_pixels: Some(4000), ..Budget::default() }),
-        Tradeoff { n_av: Some(40), p_skip: Some(1.0), ..exact },
-        Tradeoff { tight_boxes: Some(TightBoxes::Never), ..exact },
-    ];
-    let runs: Vec<_> = names().flat_map(|name| tradeoffs.map(|tradeoff| (name, tradeoff))).collect();
-    let outcomes: Vec<Outcome> = runs
-        .par_iter()
-        .enumerate()
-        .map(|(seed, &(name, tradeoff))| {
-            assert!(tradeoff.is_exact());
-            let outcome = outcome(tradeoff, name, seed as u64);
-            assert_eq!(outcome.lost, 0, "{name} with {tradeoff:?}");
-            outcome
-        })
-        .collect();
-    for (n, tradeoff) in tradeoffs.iter().enumerate() {
-        let culled: usize = outcomes.iter().skip(n).step_by(tradeoffs.len()).map(|o| o.culled).sum();
-        assert!(culled > 500, "{culled} hidden objects culled with {tradeoff:?}");
-    }
-}
+use tercet::tree::{LeafSize, TreeConfig};
+use tercet::{Budget, Culler, FrameStats, Latency, Tradeoff};
 
 /// A world of our own: squares of side 2 that face the camera, and one behind them.
 struct Cards {

@@ -188,10 +188,10 @@ fn straddlers_that_stay_in_an_inner_node_are_drawn_when_it_opens() {
 fn a_threshold_makes_questions_count() {
     let (mut script, mut chc) = (Script::row(4), chc());
     // Three samples are seen of what is visible.
-    script.tradeoff = Tradeoff { visible_pixels: 2 };
+    script.tradeoff = Tradeoff { visible_pixels: 2, ..Tradeoff::EXACT };
     let first = "count 0123, wait, count 01, count 23, wait, count 0, count 1, wait, draw 0";
     assert_eq!(script.frame(&mut chc, ZERO), first);
-    script.tradeoff = Tradeoff { visible_pixels: 3 };
+    script.tradeoff = Tradeoff { visible_pixels: 3, ..Tradeoff::EXACT };
     assert_eq!(script.frame(&mut chc, ZERO), "count 0, draw 0, count 1, count 23, wait");
     assert_eq!(script.frame(&mut chc, ZERO), "count 0123, wait");
 }

@@ -126,7 +126,7 @@ fn a_node_that_was_opened_in_vain_stays_open() {
 #[test]
 fn a_threshold_decides_about_single_nodes() {
     let (mut script, mut policy) = after(4, ZERO);
-    script.tradeoff = Tradeoff { visible_pixels: 3 };
+    script.tradeoff = Tradeoff { visible_pixels: 3, ..Tradeoff::EXACT };
     let told = script.frame(&mut policy, &["01234567", "0123", "01", "0", "23"]);
     // Three samples of 23 are seen: not enough. Nor of 0, which was visible.
     assert_eq!(told, "draw 0, ask 1+23+4567, count 0, wait, count 1, count 23, count 4567, wait");

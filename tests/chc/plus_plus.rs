@@ -101,7 +101,7 @@ fn a_leaf_is_asked_about_by_the_boxes_of_its_objects() {
     assert_eq!(script.frame(&mut policy, &[]), "draw 01, ask #0+#1, wait");
     assert_eq!(script.frame(&mut policy, &[]), "ask #0+#1, wait");
     // A count is about one box.
-    script.tradeoff = Tradeoff { visible_pixels: 1 };
+    script.tradeoff = Tradeoff { visible_pixels: 1, ..Tradeoff::EXACT };
     assert_eq!(script.frame(&mut policy, &[]), "count 01, wait");
 }
 

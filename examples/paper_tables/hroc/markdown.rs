@@ -16,7 +16,7 @@ pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {
          frame by frame, in an order that changes; each keeps a tree of its own, with the same dials.\n\n\
          ## Time over REF\n\n{}\n\
          The time of drawing the exact visible set alone is 1; in brackets the paper's, on a GPU.\n\n\
-         ## Culled of what is hidden inside the frustum\n\n{}\n\
+         ## Culled of what is hidden inside the frustum\n\n{}\n{}\
          ## Against the best of its kind\n\n{}\n{COLUMNS}\n",
         command("paper_tables"),
         flags.scale,
@@ -28,6 +28,7 @@ pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {
             format!("{:.2}{paper}", outcome.time_over_ref(n))
         }),
         by_scene(outcomes, |outcome, n| percent(outcome.culled_of_hidden(n))),
+        at_best(outcomes),
         best(outcomes),
     );
     for outcome in outcomes {
@@ -67,6 +68,22 @@ fn by_scene(outcomes: &[Outcome], cell: impl Fn(&Outcome, usize) -> String) -> S
         std::iter::once(ALGORITHMS[n].name.to_owned()).chain(cells).collect()
     };
     table(&header, (0..ALGORITHMS.len()).map(row))
+}
+
+/// What there is to win by asking about boxes.
+fn at_best(outcomes: &[Outcome]) -> String {
+    let known = |outcome: &Outcome| {
+        Some(format!("{} {}", outcome.scene.name, percent(outcome.boxes_cull_of_hidden()?)))
+    };
+    let all: Option<Vec<String>> = outcomes.iter().map(known).collect();
+    let text = |all: Vec<String>| {
+        format!(
+            "Some objects are hidden though their boxes are not. Whoever asks about the boxes of objects culls at \
+             best: {}.\n\n",
+            all.join(", ")
+        )
+    };
+    all.map_or(String::new(), text)
 }
 
 /// How hybrid and auto do beside what they choose from: the better of two, and the best of all.

@@ -79,6 +79,14 @@ impl Outcome {
         (inside - s.drawn.mean).max(0.0) / (inside - self.visible()).max(1.0)
     }
 
+    /// The same of whoever asks about boxes and knows the finished depth beforehand: no box test culls more.
+    /// Known where the oracle looked.
+    fn boxes_cull_of_hidden(&self) -> Option<f64> {
+        let s = &self.lanes[REF].summary;
+        let boxes = s.box_visible.as_ref()?.mean;
+        Some((s.in_frustum.mean - boxes).max(0.0) / (s.in_frustum.mean - self.visible()).max(1.0))
+    }
+
     /// Triangles drawn over those of the exact set: what drawing too much costs.
     fn overdraw(&self, algorithm: usize) -> f64 {
         let triangles = |n: usize| self.lanes[n].summary.drawn_triangles.mean;
