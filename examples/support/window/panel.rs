@@ -117,11 +117,12 @@ fn audit(ui: &mut Ui, engine: &mut Engine) {
     let every = engine.audits().map(Audits::every);
     let (mut on, mut n) = (every.is_some(), every.unwrap_or(AUDIT_EVERY));
     ui.horizontal(|ui| {
-        ui.checkbox(&mut on, "audit every").on_hover_text("checks frames against the exact visible set: slow");
-        ui.add(DragValue::new(&mut n).range(1..=1000));
+        ui.checkbox(&mut on, "audit every")
+            .on_hover_text("checks frames against the exact visible set: slow");
+        ui.add_enabled(on, DragValue::new(&mut n).range(1..=1000));
         ui.label("frames");
     });
-    if on.then_some(n) != every && (on || every.is_some()) {
+    if on.then_some(n) != every {
         engine.audit(on.then_some(n));
     }
     if let Some(audits) = engine.audits() {
