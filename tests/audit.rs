@@ -326,6 +326,24 @@ fn of_several_dials_each_gets_its_share() {
     assert_eq!(blamed.len(), 3, "{blamed:?}");
 }
 
+/// Whatever a policy asks about, and in whichever way: what a dial explains is no defect.
+#[test]
+fn no_policys_loss_is_called_a_defect() {
+    let finds_out = |name: &str| policy::by_name(name).is_ok_and(|policy| policy.wants_recorded().is_none());
+    for name in policy::NAMES.iter().copied().filter(|name| finds_out(name)) {
+        let late = Tradeoff { latency: Latency::Late(2), ..Tradeoff::FAST };
+        let coarse = Tradeoff { resolution_divisor: 4, ..Tradeoff::FAST };
+        let mut all = 0;
+        for (seed, tradeoff) in [coarse, late, Tradeoff { swept: true, ..late }].into_iter().enumerate() {
+            Watch::new(name, seed as u64, tradeoff, SoftwareQueries::new()).run(|_, audit| {
+                audit.lost.iter().for_each(|lost| assert_ne!(lost.dial(), None, "{name}: {lost}"));
+                all += audit.lost.len();
+            });
+        }
+        assert_eq!(all == 0, matches!(name, "none" | "frustum"), "{name} lost {all}");
+    }
+}
+
 /// A square of side 2 that faces the camera.
 fn square() -> Mesh {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
