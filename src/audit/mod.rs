@@ -283,7 +283,7 @@ struct Suspect {
     leaves_box: bool,
     /// What is in sight of the box that decided.
     full: Recount,
-    /// The same at the coarser resolution that the culler asked at, if it is one.
+    /// What is in sight of what was asked about, in a depth as coarse as the culler's, if that was coarse.
     coarse: Option<Recount>,
 }
 
