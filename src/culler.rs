@@ -270,6 +270,16 @@ impl<P> Culler<P> {
         self.costs = costs;
     }
 
+    /// How many times coarser than the view the depth of the last frame was.
+    pub(crate) fn divisor(&self) -> u32 {
+        self.divisor
+    }
+
+    /// Whether the last frame's questions saw the depth of an earlier one.
+    pub(crate) fn was_late(&self) -> bool {
+        self.past.is_some()
+    }
+
     /// The policy, to read.
     pub fn policy(&self) -> &P {
         &self.policy

@@ -72,6 +72,7 @@
 //! | exact software rasteriser and counts | `query/software/` | |
 //! | exact counts on the GPU (feature `gpu`) | `query/gpu/`, `shaders/` | |
 //! | exact visible set (item buffer) | `query/oracle.rs` | |
+//! | error accounting while running | `audit/` | ours; intervals after Hoeffding 1963 |
 //! | faults of devices, on purpose | `query/fault.rs` | |
 //! | recordings, replayed bit for bit (feature `record`) | `record/` | |
 
@@ -84,6 +85,7 @@ mod error;
 mod stats;
 mod tradeoff;
 
+pub mod audit;
 pub mod draw;
 pub mod geom;
 pub mod policy;

@@ -5,6 +5,7 @@ use std::alloc::System;
 
 use glam::Vec3;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use tercet::audit::Auditor;
 use tercet::draw::Drawable;
 use tercet::geom::{View, Viewport};
 use tercet::policy;
@@ -39,6 +40,8 @@ fn check(name: &str, filtering: &str) {
     scene.adapt([&mut eye]);
     scene.sync(&world);
     let mut culled = 0;
+    // Frames that are not due cost it nothing.
+    let mut auditor = Auditor::new(u32::MAX);
     let mut frame = |number: u32| {
         scene.update();
         // To and fro: each place is come by again.
@@ -54,6 +57,8 @@ fn check(name: &str, filtering: &str) {
             })
             .expect("a frame");
         culled += 300 - stats.drawn;
+        let audit = auditor.check(&scene, &view, &eye, |_, _| unreachable!("it is not due"));
+        assert!(audit.is_ok_and(|audit| audit.is_none()));
     };
     (0..300).for_each(&mut frame);
     let region = Region::new(ALLOCATOR);

@@ -49,7 +49,10 @@ const PROGRAM: Program = Program {
     full_detail: false,
     gate: false,
     policies: &[],
-    refused: &[("backend", "--backend has no meaning here: all lanes run on the software backend")],
+    refused: &[
+        ("audit", "--audit has no meaning here: --oracle checks every frame"),
+        ("backend", "--backend has no meaning here: all lanes run on the software backend"),
+    ],
 };
 
 fn main() -> anyhow::Result<()> {

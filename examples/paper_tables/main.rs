@@ -67,6 +67,7 @@ const PROGRAM: Program = Program {
     gate: false,
     policies: &["hierarchy-a", "hierarchy-b", "hierarchy-c", "hierarchy-d", "chc", "chc++", "nohc"],
     refused: &[
+        ("audit", "--audit has no meaning here: --oracle checks every frame"),
         ("backend", "--backend has no meaning here: all lanes run on the software backend"),
         ("policy", "--policy has no meaning here: the table says which algorithms run"),
         ("still", "--static has no meaning here: the table says what moves"),

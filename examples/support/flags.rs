@@ -70,6 +70,11 @@ pub struct Flags {
     #[arg(long)]
     pub oracle: bool,
 
+    /// Check every N-th frame against the exact visible set, outside the clock: what was lost, why, and
+    /// which dial is to blame
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub audit: Option<u32>,
+
     /// Record the run, to be replayed bit for bit with the example `replay`; opens no window
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
@@ -411,6 +416,7 @@ mod tests {
             "--size 16385x1",
             "--scale 0",
             "--frames 0",
+            "--audit 0",
             "--objects -1",
         ] {
             assert!(flags(line).is_err(), "{line} was taken");

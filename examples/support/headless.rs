@@ -39,6 +39,7 @@ pub fn run(flags: &Flags, mut scenario: Scenario) -> anyhow::Result<()> {
         recording.begin(&mut scene, &view, &eye);
         let drawn = stage.frame(&mut eye, &scene, world, &view)?;
         recording.end(&eye, &mut stage)?;
+        run.audit(&scene, world, &view, &eye)?;
 
         // 3. What was seen tells the tree where to be finer, and where coarser.
         let adapted = scene.adapt([&mut eye]);

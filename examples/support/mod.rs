@@ -1,5 +1,6 @@
 //! What the examples share: scenarios, backends, flags, measuring, plots, pictures and a window.
 
+pub mod audits;
 pub mod axis;
 pub mod canvas;
 pub mod chart;

@@ -33,6 +33,7 @@ impl Program {
             ("", "a window to fly about in; the next line's run where there is no display"),
             ("--headless", "the whole flight, with its figures and pictures"),
             ("--frames 60 --oracle", "check each frame against the exact visible set"),
+            ("--audit 24 --set visible_pixels=16", "lossy: what is lost in every 24th frame, and why"),
             ("--headless --policy frustum", "what the view frustum alone would leave to draw"),
             ("--headless --set gate=off", "ask in every frame, even where it does not pay"),
             ("--set preset=paper", "the tree with the rule and the constants of the 2005 paper"),

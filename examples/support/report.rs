@@ -14,6 +14,7 @@ use tercet::query::software::SoftwareQueries;
 use tercet::scene::Bounds;
 use tercet::tree::TreeStats;
 
+use super::audits::AuditFigures;
 use super::flags::Flags;
 
 /// One frame: one line of `frames.csv`. Times in milliseconds; the oracle's figures are empty
@@ -161,6 +162,8 @@ pub struct Summary {
     pub false_culls: Option<u64>,
     /// See [`FrameRecord::wrong_pixels`].
     pub wrong_pixels: Option<MeanMax>,
+    /// What `--audit` found.
+    pub audit: Option<AuditFigures>,
 }
 
 /// How a figure is spread over the frames.
@@ -291,6 +294,7 @@ impl Summary {
             box_visible: oracle(|f| f.box_visible.map(f64::from)).map(|m| Mean { mean: m.mean }),
             false_culls: frames.iter().map(|f| f.false_culls.map(u64::from)).sum(),
             wrong_pixels: oracle(|f| f.wrong_pixels.map(|pixels| pixels as f64)),
+            audit: None,
         }
     }
 }
@@ -397,7 +401,7 @@ mod tests {
             r#""state_changes":{"mean":0.0},"counters":{},"#,
             r#""tree":{"nodes":0,"depth":0,"splits":0.0,"merges":0.0,"moves":0.0,"flips":0.0,"#,
             r#""maintenance_share":0.25},"#,
-            r#""exact_visible":null,"box_visible":null,"false_culls":null,"wrong_pixels":null}"#,
+            r#""exact_visible":null,"box_visible":null,"false_culls":null,"wrong_pixels":null,"audit":null}"#,
         );
         assert_eq!(json, expected);
     }

@@ -13,6 +13,7 @@ use tercet::policy::Policy;
 use tercet::scene::{Scene, SyncReport};
 use tercet::tree::TreeStats;
 
+use super::audits::Audits;
 use super::flags::Flags;
 use super::painter::Painter;
 use super::reference::Reference;
@@ -32,6 +33,7 @@ pub struct Run {
     started: Instant,
     records: Vec<FrameRecord>,
     reference: Reference,
+    audits: Option<Audits>,
     view: Option<View>,
     /// The tree's counters after the first frame, which builds it.
     tree_built: TreeStats,
@@ -112,6 +114,7 @@ impl Run {
             started: Instant::now(),
             records: Vec::new(),
             reference: Reference::new(painter, flags.oracle),
+            audits: flags.audit.map(|every| Audits::new(every, painter)),
             view: None,
             tree_built: TreeStats::default(),
             flags: flags.clone(),
@@ -128,6 +131,17 @@ impl Run {
     /// draw what a reference found. To be called between sync and frame.
     pub fn look(&mut self, scene: &Scene, world: &World, view: &View, eye: &mut Eye) -> anyhow::Result<()> {
         self.reference.look(scene, world, view, eye)
+    }
+
+    /// Checks the frame that was just drawn, if it is due, and prints what it lost: for `--audit`. To be
+    /// called between frame and adapt.
+    pub fn audit(&mut self, scene: &Scene, world: &World, view: &View, eye: &Eye) -> anyhow::Result<()> {
+        let Some(audits) = &mut self.audits else { return Ok(()) };
+        let lines = audits.check(scene, world, view, eye)?;
+        if !lines.is_empty() {
+            self.bar.suspend(|| lines.iter().for_each(|line| println!("{line}")));
+        }
+        Ok(())
     }
 
     /// Takes a frame's figures.
@@ -153,7 +167,8 @@ impl Run {
         let taken = self.started.elapsed();
         let out = self.flags.out();
         let tree = TreeFigures::new(&self.tree_built, &scene.tree().stats(), self.records.len());
-        let summary = Summary::new(self.setting.clone(), tree, &self.records);
+        let audit = self.audits.as_ref().map(Audits::figures);
+        let summary = Summary { audit, ..Summary::new(self.setting.clone(), tree, &self.records) };
         report::write(&out, &summary, &self.records)?;
         plots::write(&out, &summary, &self.records)?;
         top_view::write(&out, &summary, scene, view, eye)?;

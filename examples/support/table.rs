@@ -46,6 +46,10 @@ fn rows(s: &Summary) -> Vec<(&'static str, String)> {
         rows.push(("wrongly culled", format!("{lost} objects in the whole run")));
         rows.push(("wrong pixels", format!("{:.1}, {:.0} at worst", wrong.mean, wrong.max)));
     }
+    if let Some(audit) = &s.audit {
+        let names = ["audited"].into_iter().chain(std::iter::repeat(""));
+        rows.extend(names.zip(audit.lines()));
+    }
     rows.extend([
         (
             "questions",

@@ -8,6 +8,7 @@ use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::TreeConfig;
 use tercet::worlds::Pose;
 
+use crate::support::audits::Audits;
 use crate::support::flags::Flags;
 use crate::support::painter::Painter;
 use crate::support::reference::Reference;
@@ -46,6 +47,7 @@ pub struct Engine {
     /// By slot: where objects were in the frame before, if that is to be known.
     places: Vec<Option<Aabb>>,
     reference: Reference,
+    audits: Option<Audits>,
     gpu: Gpu,
     flags: Flags,
     frames: u32,
@@ -60,6 +62,7 @@ impl Engine {
             eye: flags.eye()?,
             stage,
             reference: Reference::new(Painter { detail }, false),
+            audits: flags.audit.map(|every| Audits::new(every, Painter { detail })),
             records: VecDeque::with_capacity(REMEMBERED),
             culled: None,
             frozen: None,
@@ -81,6 +84,7 @@ impl Engine {
             true => Stage::on(self.gpu.clone(), self.detail)?,
             false => Stage::software(self.detail),
         };
+        self.audit_anew();
         Ok(())
     }
 
@@ -89,6 +93,7 @@ impl Engine {
     pub fn use_policy(&mut self, name: &str) -> anyhow::Result<()> {
         let flags = Flags { policy: name.to_owned(), ..self.flags.clone() };
         self.eye = flags.eye()?;
+        self.audit_anew();
         Ok(())
     }
 
@@ -97,6 +102,7 @@ impl Engine {
         self.scene = Scene::new(SceneConfig { tree: tree.clone(), ..Default::default() });
         self.tree = tree;
         self.places.clear();
+        self.audit_anew();
     }
 
     /// Draws everything as finely as this from now on.
@@ -104,6 +110,23 @@ impl Engine {
         self.detail = detail;
         self.reference.painter = Painter { detail };
         self.stage.set_detail(detail);
+        self.audit_anew();
+    }
+
+    /// Checks every n-th frame from now on, or none.
+    pub fn audit(&mut self, every: Option<u32>) {
+        let painter = Painter { detail: self.detail };
+        self.audits = every.map(|every| Audits::new(every, painter));
+    }
+
+    /// Forgets what the checked frames said: those to come are others.
+    pub fn audit_anew(&mut self) {
+        self.audit(self.audits.as_ref().map(Audits::every));
+    }
+
+    /// What checks frames, if they are checked.
+    pub fn audits(&self) -> Option<&Audits> {
+        self.audits.as_ref()
     }
 
     /// Leaves the culling camera where it is, or lets it go with the user's again.
@@ -126,6 +149,10 @@ impl Engine {
         let synced = scene.sync(&scenario.world);
         self.reference.look(scene, &scenario.world, &view, eye)?;
         let drawn = stage.frame(eye, scene, &scenario.world, &view)?;
+        if let Some(audits) = &mut self.audits {
+            let lines = audits.check(scene, &scenario.world, &view, eye)?;
+            lines.iter().for_each(|line| println!("{line}"));
+        }
         let adapted = scene.adapt([&mut *eye]);
         let frame = Frame { scene, view: &view, eye, synced, drawn, adapted };
         if self.records.len() == REMEMBERED {

@@ -8,6 +8,7 @@ use super::display::Layers;
 use super::engine::Engine;
 use super::fly::Fly;
 use super::{dials, states};
+use crate::support::audits::Audits;
 use crate::support::stage::Stage;
 use crate::support::table::count;
 
@@ -15,6 +16,9 @@ const KEYS: &str = "W A S D, Q E: fly · Shift: faster · wheel: speed
 drag: look · P: follow the flight · Space: pause
 F: freeze the culling camera · F12: screenshot
 1 to 6: the views below";
+
+/// How many frames apart checks are when they are switched on: a second or so.
+const AUDIT_EVERY: u32 = 24;
 
 /// Shows the controls and does what they say.
 ///
@@ -29,6 +33,8 @@ pub fn show(ui: &mut Ui, engine: &mut Engine, fly: &mut Fly, layers: &mut Layers
             ui.separator();
             camera(ui, engine, fly);
             view(ui, layers);
+            ui.separator();
+            audit(ui, engine);
             ui.separator();
             let result = result.and(all_dials(ui, engine));
             CollapsingHeader::new("Keys").show(ui, |ui| ui.small(KEYS));
@@ -106,6 +112,24 @@ fn view(ui: &mut Ui, layers: &mut Layers) {
     CollapsingHeader::new("What the colours mean").show(ui, states::legend);
 }
 
+/// Whether frames are checked against the oracle, and what that has found.
+fn audit(ui: &mut Ui, engine: &mut Engine) {
+    let every = engine.audits().map(Audits::every);
+    let (mut on, mut n) = (every.is_some(), every.unwrap_or(AUDIT_EVERY));
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut on, "audit every")
+            .on_hover_text("checks frames against the exact visible set: slow");
+        ui.add_enabled(on, DragValue::new(&mut n).range(1..=1000));
+        ui.label("frames");
+    });
+    if on.then_some(n) != every {
+        engine.audit(on.then_some(n));
+    }
+    if let Some(audits) = engine.audits() {
+        audits.figures().lines().iter().for_each(|line| drop(ui.label(line)));
+    }
+}
+
 fn all_dials(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
     let (policy, tree) = (policy_dials(ui, engine), tree_dials(ui, engine));
     section(ui, "Detail", |ui| {
@@ -130,6 +154,7 @@ fn policy_dials(ui: &mut Ui, engine: &mut Engine) -> anyhow::Result<()> {
     let turned = section(ui, "Dials of the policy", |ui| dials::show(ui, name, &known));
     for (key, value) in turned.into_iter().flatten() {
         engine.eye.policy_mut().set(key, &value)?;
+        engine.audit_anew();
     }
     Ok(())
 }
