@@ -91,6 +91,7 @@ const PROGRAM: Program = Program {
     gate: false,
     policies: &[],
     refused: &[
+        ("audit", "--audit has no meaning here: every frame is checked"),
         ("backend", "--backend has no meaning here: all lanes run on the software backend"),
         ("record", "--record has no meaning here: many settings run"),
     ],

@@ -241,8 +241,9 @@ mod tests {
         // No frame is wrong by more than all of its pixels; if the worst is wrong by 1 %, by more than 10 %.
         assert_eq!(estimate.wrong_share, Share::of(0.1 + 0.2, 4));
         let mut tally = Tally::default();
-        [0, 5, 10, 0]
-            .map(|wrong_pixels| tally.add(&Audit { pixels: 1000, wrong_pixels, ..Audit::default() }));
+        for wrong_pixels in [0, 5, 10, 0] {
+            tally.add(&Audit { pixels: 1000, wrong_pixels, ..Audit::default() });
+        }
         let share = tally.estimate().wrong_share;
         assert!(
             (share.mean - 0.00375).abs() < 1e-12 && (share.high - 0.1 * Share::of(0.15, 4).high).abs() < 1e-9

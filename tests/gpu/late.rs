@@ -81,7 +81,7 @@ fn late_questions_lose_for_as_long_as_they_are_late() {
             for (frame, (lost, culled)) in frames.iter().enumerate() {
                 let is_late = (6..6 + LATE as usize).contains(&frame);
                 assert!(*lost == 0 || is_late, "{name}, frame {frame}: {frames:?}");
-                assert!(*culled > 0 || frame == 0, "{name}, frame {frame}: {frames:?}");
+                assert!(*culled > 0 || frame < 2, "{name}, frame {frame}: {frames:?}");
             }
             let keeps = gpu.backend != wgpu::Backend::Gl;
             assert_eq!(frames[6].0 > 0, keeps, "{name}: {frames:?}");
