@@ -74,7 +74,7 @@ fn walk(number: u32, asked: u32, by: f32) -> Frame {
     Frame { in_view, whole: whole * noise(2 * number + 1, by), drawn, asking, drawing }
 }
 
-/// It asked in a tenth of these frames before trials and looks were as they are: its only trial in the
+/// It asked in an eighth of these frames before trials and looks were as they are: its only trial in the
 /// first hundred frames was held against a frame of another view, and then it waited.
 #[test]
 fn where_asking_pays_by_and_by_the_gate_is_as_good_as_none() {
