@@ -90,10 +90,12 @@ struct Failure {
     waited: u32,
 }
 
-/// Frames of a trial: at least, of which the first half is not judged, and at most.
+/// Frames of a trial: at least, of which the first half is not judged, and at most; the very first does
+/// not count.
 const TRIAL: u32 = 8;
 const LONGEST_TRIAL: u32 = 48;
-/// A frame of a trial that takes so many times what drawing takes ends it.
+/// Two frames of a trial that take so many times what drawing takes end it, and one that takes the square
+/// of it.
 const RUINOUS: f32 = 3.0;
 /// Asking that takes less than this of what drawing took needs no look.
 const SURE: f32 = 0.8;
@@ -245,9 +247,16 @@ impl Gate {
         let (Some(whole), Some(asking)) = (self.book.whole(self.in_view), self.book.asking.lately()) else {
             return;
         };
+        if asked == 1 {
+            // It builds what all later ones use.
+            return self.book.asking.clear();
+        }
         let goes_on = match self.book.asking.trend() {
-            // The first frame builds what all later ones use.
-            None => asked == 1 || last.total < RUINOUS * whole,
+            // One such frame may have been held up, or be a device's word on the first.
+            None => {
+                let is_ruinous = asking > RUINOUS * whole && asked > 2;
+                !is_ruinous && last.total < RUINOUS * RUINOUS * whole
+            }
             Some(_) if asking < SURE * whole => return self.open(0.0),
             Some(trend) => {
                 let in_the_end = asking * trend.powi(LONGEST_TRIAL.saturating_sub(asked) as i32);

@@ -101,6 +101,15 @@ fn a_trial_lasts_while_asking_becomes_cheaper() {
     }
 }
 
+/// What asking builds at first may take long, and a device tells of it a frame late.
+#[test]
+fn one_dear_frame_does_not_end_a_trial() {
+    for dear in 0..8 {
+        let sums = run(300, |_, asked| steady(if asked == dear { 100.0 } else { 10.0 }));
+        assert!(sums.asked > 280, "frame {dear}: {sums:?}");
+    }
+}
+
 /// And if it ends up dearer than drawing after all, little is lost.
 #[test]
 fn asking_that_never_pays_costs_less_than_three_per_cent() {
