@@ -80,8 +80,7 @@ const SKY: vec3<f32> = vec3<f32>(0.30, 0.36, 0.44);
 const GROUND: vec3<f32> = vec3<f32>(0.17, 0.15, 0.13);
 const HEAD: f32 = 0.10;
 
-@fragment
-fn lit(surface: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+fn lit_color(surface: Surface, front: bool) -> vec3<f32> {
     let toward_eye = unit(camera.eye.xyz - surface.world * camera.eye.w, vec3<f32>(0.0, 1.0, 0.0));
     var normal = unit(surface.normal, toward_eye);
     // Both sides are drawn. The triangle knows which one is seen; a smooth normal near an outline
@@ -92,7 +91,33 @@ fn lit(surface: Surface, @builtin(front_facing) front: bool) -> @location(0) vec
     let ambient = mix(GROUND, SKY, 0.5 * normal.y + 0.5);
     let sun = SUN * max(dot(normal, TOWARD_SUN), 0.0);
     let head = HEAD * max(dot(normal, toward_eye), 0.0);
-    return vec4<f32>(shown(surface.color * (ambient + sun + head)), 1.0);
+    return surface.color * (ambient + sun + head);
+}
+
+@fragment
+fn lit(surface: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return vec4<f32>(shown(lit_color(surface, front)), 1.0);
+}
+
+@group(1) @binding(0) var noise: texture_2d<f32>;
+@group(1) @binding(1) var noise_sampler: sampler;
+
+// How often the texture is looked into.
+override look_ups: u32 = 1u;
+
+// The same, mottled. Each look-up says where the next one is.
+@fragment
+fn lit_by_look_ups(surface: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    // Not a whole number of times in a unit, lest what stands in rows looks all the same.
+    var at = vec2<f32>(0.31, 0.37) * surface.world.xy + 0.23 * surface.world.zz;
+    var sum = 0.0;
+    for (var i = 0u; i < look_ups; i++) {
+        let texel = textureSampleLevel(noise, noise_sampler, at, 0.0);
+        at += 0.25 * (texel.xy - 0.5);
+        sum += texel.z;
+    }
+    let mottled = 0.8 + 0.4 * sum / f32(look_ups);
+    return vec4<f32>(shown(lit_color(surface, front) * mottled), 1.0);
 }
 
 // The object's own colour.

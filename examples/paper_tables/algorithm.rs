@@ -5,6 +5,7 @@ use tercet::policy;
 
 use crate::support::flags::Flags;
 use crate::support::lockstep::Lane;
+use crate::support::stage::Stage;
 
 /// A policy with its dials.
 pub struct Algorithm {
@@ -19,13 +20,19 @@ pub struct Algorithm {
 }
 
 impl Algorithm {
-    /// One that has seen nothing yet. Its own dials come after those of the command line.
+    /// One that has seen nothing yet, on the software backend. Its own dials come after those of the
+    /// command line.
     pub fn lane(&self, flags: &Flags) -> anyhow::Result<Lane> {
+        self.lane_on(Stage::software(flags.detail()?), flags)
+    }
+
+    /// The same on a backend that draws as finely as the flags say.
+    pub fn lane_on(&self, stage: Stage, flags: &Flags) -> anyhow::Result<Lane> {
         let mut policy = policy::by_name(self.policy)?;
         flags.turn(&mut *policy)?;
         for (key, value) in self.dials {
             policy.set(key, value)?;
         }
-        Lane::new(flags, policy, flags.tree()?)
+        Lane::on(stage, flags, policy, flags.tree()?)
     }
 }

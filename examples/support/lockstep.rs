@@ -20,13 +20,13 @@ use super::reference::Reference;
 use super::report::{FrameRecord, Setting, Summary, TreeFigures, percentile};
 use super::run::{Eye, Frame};
 use super::scenario::Scenario;
-use super::stage::SoftwareStage;
+use super::stage::Stage;
 
 /// One way of culling: a scene, an eye and a backend of its own.
 pub struct Lane {
     scene: Scene,
     eye: Eye,
-    stage: SoftwareStage,
+    stage: Stage,
     /// Finds what a policy draws that is itself a reference.
     reference: Reference,
     records: Vec<FrameRecord>,
@@ -56,6 +56,12 @@ impl Measured {
         self.summary.counters.get(key).map(|counter| counter.mean)
     }
 
+    /// The median of the app's draws by the device's own clock, milliseconds, if it has one.
+    pub fn device_draw_ms(&self) -> Option<f64> {
+        let known: Vec<f64> = self.frames.iter().filter_map(|frame| frame.device_draw_ms).collect();
+        (!known.is_empty()).then(|| percentile(&known, 50.0))
+    }
+
     /// The time of each frame, milliseconds.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         self.frames.iter().map(|frame| frame.frame_ms)
@@ -63,8 +69,18 @@ impl Measured {
 }
 
 impl Lane {
-    /// A lane that has seen nothing yet, and draws as finely as the flags say.
+    /// A lane that has seen nothing yet, and draws as finely as the flags say, on the software backend.
     pub fn new(flags: &Flags, policy: Box<dyn Policy>, tree: TreeConfig) -> anyhow::Result<Self> {
+        Self::on(Stage::software(flags.detail()?), flags, policy, tree)
+    }
+
+    /// The same on a backend that draws as finely.
+    pub fn on(
+        stage: Stage,
+        flags: &Flags,
+        policy: Box<dyn Policy>,
+        tree: TreeConfig,
+    ) -> anyhow::Result<Self> {
         let (mut scene, mut eye) =
             (Scene::new(SceneConfig { tree, ..Default::default() }), Culler::new(policy));
         eye.tradeoff = flags.tradeoff()?;
@@ -73,7 +89,7 @@ impl Lane {
         Ok(Self {
             scene,
             eye,
-            stage: SoftwareStage::new(detail),
+            stage,
             reference: Reference::new(Painter { detail }, false),
             records: Vec::new(),
             built: TreeStats::default(),
@@ -158,8 +174,11 @@ pub fn run(
             judge(&mut references, &judges, &mut lanes, &scenario.world, &view)?;
         }
     }
-    let setting =
-        |lane: &Lane| Setting::new(flags, &scenario.name, lane.eye.policy().name(), &scenario.world);
+    let setting = |lane: &Lane| Setting {
+        backend: lane.stage.backend().to_owned(),
+        adapter: lane.stage.adapter(),
+        ..Setting::new(flags, &scenario.name, lane.eye.policy().name(), &scenario.world)
+    };
     Ok(lanes
         .into_iter()
         .map(|lane| {

@@ -38,6 +38,8 @@ pub struct FrameRecord {
     pub query_ms: f64,
     /// Waiting for answers.
     pub wait_ms: f64,
+    /// The app's draws by the device's own clock, of a frame not long ago; empty where there is none.
+    pub device_draw_ms: Option<f64>,
     /// Objects handed to the app to draw.
     pub drawn: u32,
     /// Triangles that the app drew.

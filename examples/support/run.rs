@@ -73,6 +73,7 @@ impl Frame<'_> {
             draw_ms: ms(stats.draw),
             query_ms: ms(stats.query),
             wait_ms: ms(stats.wait),
+            device_draw_ms: (!stats.device_draw.is_zero()).then(|| ms(stats.device_draw)),
             drawn: stats.drawn,
             drawn_triangles: *triangles,
             in_frustum: scene.objects().filter(|o| inside(o.bounds)).count() as u32,

@@ -115,6 +115,33 @@ fn both_sides_are_lit_alike() {
     }
 }
 
+/// More look-ups, other colours; none, the same as ever. The depth knows nothing of them.
+#[test]
+fn look_ups_mottle_what_is_lit() {
+    let view = flat_view(SIDE);
+    let mut world = World::new();
+    wall(&mut world, 0.0, [200, 180, 160]);
+    for gpu in gpus() {
+        let looked = |look_ups| {
+            shoot(&gpu, &view, Shading::Lit, |renderer, pass| {
+                renderer.set_look_ups(look_ups);
+                renderer.draw(pass, &world, &objects(&world));
+            })
+        };
+        let different = |mut colors: Vec<u32>| {
+            colors.sort_unstable();
+            colors.dedup();
+            colors.len()
+        };
+        let [none, one, forty] = [0, 1, 40].map(looked);
+        assert_eq!(different(none.colors), 1);
+        assert!(different(one.colors.clone()) > 8 && different(forty.colors.clone()) > 8);
+        assert_ne!(one.colors, forty.colors);
+        assert_eq!(forty.colors, looked(40).colors);
+        assert!(none.nearness == one.nearness && one.nearness == forty.nearness);
+    }
+}
+
 #[test]
 fn overdraw_counts_every_layer_and_keeps_the_nearest_depth() {
     let view = flat_view(SIDE);

@@ -5,12 +5,13 @@ use std::fmt::Write;
 use super::Outcome;
 use super::algorithms::{ALGORITHMS, OPT, VFC};
 use super::claims::{CLAIMS, Claim};
+use super::shading::{self, Shaded};
 use crate::support::flags::Flags;
 use crate::support::markdown::{command, known, lost, setting, table};
 use crate::support::table::count;
 
 /// The whole page.
-pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {
+pub fn page(flags: &Flags, outcomes: &[Outcome], shaded: &[Shaded]) -> anyhow::Result<String> {
     let mut page = format!(
         "# The comparison of CHC++ (Mattausch, Bittner and Wimmer 2008), run again\n\n{}\n\n\
          ## Beside the paper\n\n{}\n{COLUMNS}\n",
@@ -23,6 +24,7 @@ pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {
     page += "\n";
     page += NOTES;
     page += &lost(outcomes.iter().flat_map(|outcome| &outcome.lanes));
+    page += &shading::section(shaded);
     Ok(page)
 }
 
@@ -56,8 +58,8 @@ there is little waiting to be filled. The paper's figures come from a GPU; quest
 compare, times much less.
 - OPT's set is found outside the clock, just before its frame and on its tree, which is then warm in the \
 caches.
-- The paper's scenes are Vienna, Pompeii and a power plant. Shader complexity (the paper draws with up to \
-40 look-ups a pixel) is not run.
+- The paper's scenes are Vienna, Pompeii and a power plant.
+- Shader complexity (the paper draws with up to 40 look-ups a pixel) is run with `--backend wgpu`.
 - *Box visible* are the objects whose own box would be found visible; *really visible* those that own a \
 pixel.
 ";

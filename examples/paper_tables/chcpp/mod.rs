@@ -3,6 +3,9 @@
 //!
 //! All run in lockstep, each on a tree of its own with the same dials. The constants are the
 //! paper's: `n_av` 10, for CHC too, `b` 50, `d_max` 3, `s_max` 1.4.
+//!
+//! With `--backend wgpu` some of them also go a part of the way on the GPU, with shaders of different
+//! complexity ([`shading`]).
 
 mod algorithms;
 mod claims;
@@ -10,6 +13,7 @@ mod figures;
 mod markdown;
 mod rows;
 mod scenes;
+mod shading;
 
 use crate::frames;
 use crate::output::Output;
@@ -30,11 +34,16 @@ pub struct Outcome {
     lanes: Vec<Measured>,
 }
 
-/// Runs all scenes and writes `chcpp.md`, two tables and two figures into `--out`.
+/// Runs all scenes and writes `chcpp.md`, two tables and two figures into `--out`; with a GPU, one more
+/// of each.
 pub fn run(flags: &Flags) -> anyhow::Result<()> {
     flags.check_table(&POLICIES)?;
     let flags = &flags.with_default_scale(SCALE);
-    let frames = SCENES.len() * ALGORITHMS.len() * flags.frames as usize;
+    let gpu = shading::gpu(flags)?;
+    let mut frames = SCENES.len() * ALGORITHMS.len() * flags.frames as usize;
+    if gpu.is_some() {
+        frames += shading::frames(flags);
+    }
     let output = Output::new(flags, "chcpp", frames as u64)?;
     let mut outcomes = Vec::new();
     for scene in SCENES {
@@ -49,7 +58,11 @@ pub fn run(flags: &Flags) -> anyhow::Result<()> {
     write_csv(&output.file(".csv"), outcomes.iter().flat_map(rows::rows))?;
     frames::write(&output.file("_frames.csv"), outcomes.iter().flat_map(rows::runs))?;
     figures::write(&output, flags, &outcomes)?;
-    output.finish(&markdown::page(flags, &outcomes)?)
+    let shaded = match &gpu {
+        Some(gpu) => shading::run(&output, flags, gpu)?,
+        None => Vec::new(),
+    };
+    output.finish(&markdown::page(flags, &outcomes, &shaded)?)
 }
 
 impl Outcome {

@@ -141,6 +141,11 @@ impl WgpuStage {
         self.queries.backend()
     }
 
+    /// Shades each fragment with so many look-ups from now on; see [`Renderer::set_look_ups`].
+    pub fn set_look_ups(&mut self, count: u32) {
+        self.renderer.set_look_ups(count);
+    }
+
     /// What was drawn last.
     pub fn picture(&self) -> &Picture {
         &self.picture

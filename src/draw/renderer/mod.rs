@@ -46,12 +46,14 @@
 //! | `geometry`, `normals` | meshes on the device |
 //! | `camera` | the view as the shaders read it |
 //! | `pipelines` | made when first needed |
+//! | `look_ups` | a texture, where shading is to be dear |
 //! | `overlays` | boxes and polygons over a frame |
 
 mod arena;
 mod batch;
 mod camera;
 mod geometry;
+mod look_ups;
 mod normals;
 mod overlays;
 mod pipelines;
@@ -134,6 +136,7 @@ pub struct Renderer {
     arena: Arena,
     /// By sRGB byte: the linear fraction of 65535.
     linear: [u16; 256],
+    look_ups: u32,
     frame: Option<Frame>,
     drawn: Drawn,
     uploaded: u64,
@@ -179,6 +182,7 @@ impl Renderer {
             batch: Batch::default(),
             arena: Arena::default(),
             linear: std::array::from_fn(linear),
+            look_ups: 0,
             frame: None,
             drawn: Drawn::default(),
             uploaded: 0,
@@ -198,11 +202,18 @@ impl Renderer {
         self.frame = Some(Frame { view: view.clone(), detail, shading });
     }
 
+    /// How often [`Shading::Lit`] looks into a texture for each fragment, each time where the last texel
+    /// says: a measure of how dear an app's own shading is. Surfaces look mottled then. With 0, as at
+    /// first, there is no texture.
+    pub fn set_look_ups(&mut self, count: u32) {
+        self.look_ups = count;
+    }
+
     /// Draws objects. Whoever has no [`Drawable`] is left out; before the first
     /// [`Renderer::begin`], everybody is.
     ///
     /// Meshes that are new are uploaded. O(objects); no memory is allocated once a frame like this
-    /// one has been drawn. Sets pipeline, bind group 0, vertex buffers 0 and 1 and the index buffer.
+    /// one has been drawn. Sets pipeline, bind group 0 (and 1 for look-ups), vertex buffers 0 and 1 and the index buffer.
     pub fn draw(
         &mut self,
         pass: &mut RenderPass<'static>,
@@ -286,11 +297,15 @@ impl Renderer {
         pass.set_bind_group(0, &self.bindings, &[]);
         let kinds: &[Kind] = match (frame.shading, self.color) {
             (_, None) => &[Kind::Depth],
+            (Shading::Lit, _) if self.look_ups > 0 => &[Kind::LookUps(self.look_ups)],
             (Shading::Lit, _) => &[Kind::Lit],
             (Shading::Unlit, _) => &[Kind::Unlit],
             (Shading::Overdraw, _) => &[Kind::Depth, Kind::Layers],
         };
         for &kind in kinds {
+            if let Kind::LookUps(_) = kind {
+                pass.set_bind_group(1, self.pipelines.look_ups(&self.device, &self.queue), &[]);
+            }
             pass.set_pipeline(self.pipelines.get(&self.device, kind, &frame.view));
             for run in runs {
                 let group = self.geometry.group(run.group);

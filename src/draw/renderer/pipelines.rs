@@ -7,13 +7,14 @@ use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor,
     BindGroupLayoutEntry, BindingType, BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer,
     BufferBindingType, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device,
-    FragmentState, MultisampleState, PipelineLayout, PipelineLayoutDescriptor, PrimitiveState,
-    PrimitiveTopology, RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderModuleDescriptor,
-    ShaderSource, ShaderStages, TextureFormat, VertexAttribute, VertexBufferLayout, VertexFormat,
-    VertexState, VertexStepMode,
+    FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor,
+    PrimitiveState, PrimitiveTopology, Queue, RenderPipeline, RenderPipelineDescriptor, ShaderModule,
+    ShaderModuleDescriptor, ShaderSource, ShaderStages, TextureFormat, VertexAttribute, VertexBufferLayout,
+    VertexFormat, VertexState, VertexStepMode,
 };
 
 use super::batch::Instance;
+use super::look_ups::LookUps;
 use super::normals::Vertex;
 use super::overlays::{BoxEdges, Corner};
 use crate::geom::{DepthDirection, DepthFormat, View};
@@ -36,6 +37,8 @@ pub(super) const SOURCES: [&str; 2] = [
 pub(super) enum Kind {
     /// Surfaces, shaded.
     Lit,
+    /// The same, after so many look-ups in a texture: 1 or more.
+    LookUps(u32),
     /// Surfaces in their own colours.
     Unlit,
     /// Surfaces, into the depth alone.
@@ -67,6 +70,8 @@ pub(super) struct Pipelines {
     modules: [ShaderModule; 2],
     bindings: BindGroupLayout,
     layout: PipelineLayout,
+    /// Made when they are first needed, too.
+    look_ups: Option<LookUps>,
     made: HashMap<Key, RenderPipeline>,
 }
 
@@ -96,7 +101,7 @@ impl Pipelines {
             bind_group_layouts: &[Some(&bindings)],
             immediate_size: 0,
         });
-        Self { color, modules, bindings, layout, made: HashMap::new() }
+        Self { color, modules, bindings, layout, look_ups: None, made: HashMap::new() }
     }
 
     /// Binds the uniforms.
@@ -108,7 +113,13 @@ impl Pipelines {
         })
     }
 
-    /// The pipeline for a view's target.
+    /// What [`Kind::LookUps`] reads, bound as group 1.
+    pub(super) fn look_ups(&mut self, device: &Device, queue: &Queue) -> &BindGroup {
+        let Self { look_ups, bindings, .. } = self;
+        &look_ups.get_or_insert_with(|| LookUps::new(device, queue, bindings)).bindings
+    }
+
+    /// The pipeline for a view's target. [`Pipelines::look_ups`] comes before one that reads them.
     pub(super) fn get(&mut self, device: &Device, kind: Kind, view: &View) -> &RenderPipeline {
         let key = Key {
             kind,
@@ -116,7 +127,11 @@ impl Pipelines {
             is_float: view.format() == DepthFormat::Depth32Float,
             samples: view.samples(),
         };
-        let Self { color, modules, layout, made, .. } = self;
+        let Self { color, modules, layout, look_ups, made, .. } = self;
+        let layout = match (kind, look_ups) {
+            (Kind::LookUps(_), Some(look_ups)) => &look_ups.layout,
+            _ => layout,
+        };
         made.entry(key).or_insert_with(|| key.make(device, modules, layout, *color))
     }
 }
@@ -130,13 +145,17 @@ impl Key {
         color: Option<TextureFormat>,
     ) -> RenderPipeline {
         let Recipe { stages, buffers, topology, blend, draws_color, depth } = self.kind.recipe();
+        let constants: Vec<(&str, f64)> = match self.kind {
+            Kind::LookUps(count) => vec![("look_ups", count.into())],
+            _ => Vec::new(),
+        };
         let module = if self.kind.is_surface() { surfaces } else { overlays };
         let write_mask = if draws_color { ColorWrites::ALL } else { ColorWrites::empty() };
         let target = color.map(|format| [Some(ColorTargetState { format, blend, write_mask })]);
         let fragment = target.as_ref().map(|targets| FragmentState {
             module,
             entry_point: Some(stages[1]),
-            compilation_options: Default::default(),
+            compilation_options: PipelineCompilationOptions { constants: &constants, ..Default::default() },
             targets,
         });
         let buffers: Vec<_> = buffers.into_iter().map(Some).collect();
@@ -190,7 +209,7 @@ enum Depth {
 
 impl Kind {
     fn is_surface(self) -> bool {
-        matches!(self, Self::Lit | Self::Unlit | Self::Depth | Self::Layers)
+        matches!(self, Self::Lit | Self::LookUps(_) | Self::Unlit | Self::Depth | Self::Layers)
     }
 
     fn recipe(self) -> Recipe {
@@ -214,6 +233,7 @@ impl Kind {
         let on_screen = |topology| overlays("corner", CORNERS, topology, Depth::Ignored);
         match self {
             Self::Lit => surfaces(["surface", "lit"]),
+            Self::LookUps(_) => surfaces(["surface", "lit_by_look_ups"]),
             Self::Unlit => surfaces(["surface", "unlit"]),
             Self::Depth => Recipe { draws_color: false, ..surfaces(["place", "nothing"]) },
             Self::Layers => {
@@ -282,15 +302,16 @@ const fn attribute(shader_location: u32, format: VertexFormat, offset: usize) ->
 #[cfg(test)]
 mod tests {
     use wgpu::naga::ShaderStage;
-    use wgpu::naga::back::glsl;
+    use wgpu::naga::back::{glsl, pipeline_constants};
     use wgpu::naga::front::wgsl;
     use wgpu::naga::proc::BoundsCheckPolicies;
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
     use super::*;
 
-    const KINDS: [Kind; 8] = [
+    const KINDS: [Kind; 9] = [
         Kind::Lit,
+        Kind::LookUps(1),
         Kind::Unlit,
         Kind::Depth,
         Kind::Layers,
@@ -310,6 +331,9 @@ mod tests {
             let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
                 .validate(&module)
                 .unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
+            let constants = Default::default();
+            let (module, info) = pipeline_constants::process_overrides(&module, &info, None, &constants)
+                .expect("every constant has a default");
             for entry in &module.entry_points {
                 let options = glsl::Options {
                     version: glsl::Version::Embedded { version: 310, is_webgl: false },

@@ -37,8 +37,6 @@ pub struct Auto {
     running: usize,
     contest: Race,
     signs: Signs,
-    /// Frames in a row that dual queries' gate has been open, on trial or for good.
-    open_for: u32,
     /// Objects in the scene, and those drawn in the last frame of which that is known.
     objects: usize,
     drawn: u32,
@@ -70,8 +68,6 @@ const HYBRID: usize = 2;
 const CHC_PLUS_PLUS: usize = 3;
 /// By number: what counters call a way, which says how many frames were its.
 const KEYS: [&str; 5] = ["auto_dual_query", "auto_hroc", "auto_hybrid", "auto_chc_plus_plus", "auto_hi_z"];
-/// Frames after which a gate that is open has made its own trial: nobody disturbs it before.
-const TRIED: u32 = 12;
 /// The dials of the gate, which are this policy's as well.
 const GATE: [&str; 2] = ["gate", "probe"];
 /// The share of the objects that move from which movers are swept apart.
@@ -107,7 +103,6 @@ impl Default for Auto {
             running: DUAL_QUERY,
             contest: Race::new(KEYS.len()),
             signs: Signs::default(),
-            open_for: 0,
             objects: 0,
             drawn: 0,
         }
@@ -126,7 +121,8 @@ impl Auto {
 
     /// Who may challenge: who fits what moves, if there is anything to gain.
     fn admits(&self, way: usize) -> bool {
-        let is_open = self.open_for > TRIED;
+        // While the gate is on trial, nobody disturbs it.
+        let is_open = self.ways.dual_query.0.has_opened();
         let moves = self.signs.moving >= MOVERS;
         (is_open || self.contest.champion() != DUAL_QUERY)
             && match way {
@@ -156,7 +152,6 @@ impl Policy for Auto {
 
     fn begin(&mut self, cx: &Context<'_>) {
         self.signs.look(cx);
-        self.open_for = if self.ways.dual_query.0.asks() { self.open_for.saturating_add(1) } else { 0 };
         self.objects = cx.scene.len();
         let last = cx.costs.last_frame();
         self.drawn = last.map_or(self.drawn, |last| last.drawn);
@@ -183,7 +178,6 @@ impl Policy for Auto {
         self.running = DUAL_QUERY;
         self.contest = Race::new(KEYS.len());
         self.signs = Signs::default();
-        self.open_for = 0;
     }
 
     fn cut(&mut self) {

@@ -1,21 +1,32 @@
 //! Whether the next frame asks: what asking has cost, against what drawing the whole frustum has.
 //!
 //! ```text
-//!            enough is hidden                asking was faster
-//!   ┌──────┐ ───────────────▶ ┌─────────┐ ───────────────────▶ ┌────────┐ in doubt ┌────────┐
-//!   │ shut │                  │ trial   │                      │ open   │ ───────▶ │ look   │
-//!   │      │ ◀─────────────── │ 8 asked │                      │        │ ◀─────── │ 4 whole│
-//!   └──────┘  asking was not  └─────────┘                      └────────┘          └────────┘
-//!       ▲                                                          drawing was faster  │
-//!       └───────────────────────────────────────────────────────────────────────────────┘
+//!            enough is hidden                   asking is much faster
+//!   ┌──────┐ ───────────────▶ ┌─────────────┐ ───────────────────────▶ ┌──────┐
+//!   │ shut │                  │    trial    │ in doubt ┌─────────┐     │ open │
+//!   │      │                  │ 8 to 48 ask │ ───────▶ │  look   │ ──▶ │      │
+//!   └──────┘                  └─────────────┘          │ 3 whole │ ◀── │      │
+//!       ▲                                              └─────────┘     └──────┘
+//!       └─────────────────────────────────────────────────┘   now and then
+//!                       drawing was faster
 //! ```
 //!
 //! Shut, every few frames end with a *probe*, which tells the share of objects that asking could
-//! cull. A trial that failed is repeated when half as many again are hidden, or after a wait that
-//! doubles each time. Open, the gate knows what an object cost when all were drawn, and counts
-//! those in view: only where the two ways come near each other does it look again. So both ways
-//! of finding out are as rare as they are dear.
+//! cull. Enough of it makes a *trial*. A policy that has just begun to ask is dearer than it will be:
+//! it knows nothing of what is visible, and its tree is coarse. So a trial goes on for as long as its
+//! cost falls fast enough to be worth it in the end. What drawing took is known from before the trial,
+//! maybe of another view. So a *look* at a few frames drawn whole has the last word, unless asking
+//! is much faster; if drawing is faster, the look cost nothing.
+//!
+//! Open, the gate estimates from the objects in view what drawing all of them would take. The nearer that
+//! is to what asking takes, the sooner it looks again.
+//!
+//! Whatever does not pay is paid for before it is tried again: looks, and trials after the first,
+//! take about [`SPEND`] of the time at most. Waits after trials that fail also double. A trial is
+//! repeated sooner when half as many objects again are hidden, or when drawing has become dearer than
+//! asking was, which a shut gate sees for nothing.
 
+use super::book::Book;
 use crate::costs::FrameCost;
 
 /// What a frame does.
@@ -37,20 +48,34 @@ pub(super) struct Gate {
     /// Objects in view, when they were last counted.
     in_view: f32,
     failure: Option<Failure>,
-    /// Frames to the next trial after one that fails.
+    /// Frames to the next trial after one that fails, at least.
     patience: u32,
-    /// Frames to the next look after one that changes nothing.
-    look_every: u32,
+    /// What the last look took beyond asking, seconds.
+    look_lost: f32,
     /// Frames of which nobody knew what they took, before the first of which somebody did.
     blind: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Stage {
-    Shut { until_probe: u32, interval: u32 },
-    Trial { asked: u32 },
-    Open { until_count: u32, until_look: u32, in_doubt: bool },
-    Look { drawn: u32 },
+    Shut {
+        until_probe: u32,
+        interval: u32,
+    },
+    Trial {
+        asked: u32,
+    },
+    /// `frames` since it was opened.
+    Open {
+        until_count: u32,
+        frames: u32,
+        looks: bool,
+    },
+    /// `ends_trial`, or is one of an open gate.
+    Look {
+        drawn: u32,
+        ends_trial: bool,
+    },
 }
 
 /// A trial that did not pay.
@@ -58,25 +83,35 @@ enum Stage {
 struct Failure {
     /// How many objects were hidden, once a probe has told.
     hidden: Option<f32>,
-    /// Frames to the next trial if nothing changes.
+    /// Seconds of a frame that asked, or of one drawn whole that was dearer and changed nothing.
+    asking: f32,
+    /// Frames to the next trial if nothing changes, and frames since this one.
     wait: u32,
+    waited: u32,
 }
 
-/// Frames of a trial: the first half is not judged, in which the policy learns.
+/// Frames of a trial: at least, of which the first half is not judged, and at most; the very first does
+/// not count.
 const TRIAL: u32 = 8;
-/// A frame of a trial that takes so many times what drawing takes ends it.
+const LONGEST_TRIAL: u32 = 48;
+/// Two frames of a trial that take so many times what drawing takes end it, and one that takes the square
+/// of it.
 const RUINOUS: f32 = 3.0;
-/// Frames of a look; the last one counts. A device's times are those of frames before.
+/// Asking that takes less than this of what drawing took needs no look.
+const SURE: f32 = 0.8;
+/// Drawing is dearer than asking was: by so much, lest it is noise.
+const DEARER: f32 = 1.1;
+/// Frames of a look; the last one of which the time is known counts. A device's times are those of
+/// frames before.
 const LOOK: u32 = 3;
-/// Frames from one count of what is in view to the next.
+/// Frames from one count of what is in view to the next: as often, a look can begin.
 const COUNT_EVERY: u32 = 8;
-/// Frames from opening to the first look.
-const FIRST_LOOK: u32 = 32;
-const LAST_LOOK: u32 = 512;
-/// Drawing that would take more than so many times what asking takes is not tried.
-const DOUBT: f32 = 1.25;
-/// Frames from the first failed trial to the next.
-const PATIENCE: u32 = 64;
+/// Frames from opening to the first look, and from one look to the next, at least.
+const FIRST_LOOK: u32 = 16;
+/// The share of the time that may be spent on finding out.
+const SPEND: f32 = 0.02;
+/// Frames from the first failed trial to the next, at least.
+const PATIENCE: u32 = 8;
 const MOST_PATIENCE: u32 = 2048;
 /// Frames after which nobody will tell any more what frames take: a device's first times are late.
 const BLIND: u32 = 16;
@@ -96,7 +131,7 @@ impl Default for Gate {
             in_view: 0.0,
             failure: None,
             patience: PATIENCE,
-            look_every: FIRST_LOOK,
+            look_lost: 0.0,
             blind: 0,
         }
     }
@@ -106,7 +141,7 @@ impl Gate {
     /// What the next frame does, after one that took `last`. Once a frame.
     pub(super) fn plan(&mut self, last: Option<FrameCost>) -> Plan {
         if let (Some(cost), Some(plan)) = (last, self.last) {
-            self.book.enter(plan, cost, matches!(self.stage, Stage::Look { drawn: LOOK }));
+            self.book.enter(plan, cost, matches!(self.stage, Stage::Look { drawn: LOOK.., .. }));
             self.judge(cost);
         }
         let plan = if self.is_blind(last) { Plan::Ask { count: false } } else { self.advance() };
@@ -121,17 +156,24 @@ impl Gate {
         self.in_view = in_view;
         let hidden = share * in_view;
         let pays = hidden >= FEW && share * IN_VAIN > (1.0 - share) * question / SKIP;
+        let is_dearer = self.drawing_is_dearer();
         let is_news = match &mut self.failure {
             None => true,
-            Some(Failure { hidden: before, wait }) => {
+            Some(Failure { hidden: before, wait, waited, .. }) => {
                 let before = *before.get_or_insert(hidden);
-                *wait == 0 || hidden > 1.5 * before + FEW
+                is_dearer || waited >= wait || hidden > 1.5 * before + FEW
             }
         };
         self.stage = if pays && is_news {
-            self.book.asking = None;
+            self.book.asking.clear();
             Stage::Trial { asked: 0 }
         } else {
+            if let (true, Some(failure), Some(lately)) =
+                (is_dearer, &mut self.failure, self.book.drawing_all.lately())
+            {
+                // No news any more.
+                failure.asking = failure.asking.max(lately);
+            }
             let interval = (2 * interval).min(most.max(1));
             Stage::Shut { until_probe: interval - 1, interval }
         };
@@ -140,18 +182,24 @@ impl Gate {
     /// How many objects are in view of a frame that asks.
     pub(super) fn counted(&mut self, objects: f32) {
         self.in_view = objects;
-        let Stage::Open { in_doubt, until_look, .. } = &mut self.stage else { return };
-        let (Some(asking), Some(whole)) = (self.book.asking, self.book.whole(objects)) else { return };
-        *in_doubt = whole < DOUBT * asking;
-        if whole < asking {
-            *until_look = (*until_look).min(FIRST_LOOK / 2);
-        }
+        let Stage::Open { frames, looks, .. } = &mut self.stage else { return };
+        let (Some(asking), Some(whole)) = (self.book.asking.lately(), self.book.whole_now(objects)) else {
+            return;
+        };
+        // What the last one took must be paid for, and what the next one will take.
+        let price = (LOOK as f32 * (whole - asking)).max(self.look_lost);
+        *looks = *frames >= FIRST_LOOK && *frames as f32 * SPEND * asking >= price;
     }
 
     /// Whether the next frame asks, as far as is known.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.stage, Stage::Trial { .. } | Stage::Open { .. } | Stage::Look { .. })
             || self.blind > BLIND
+    }
+
+    /// Whether asking has proved itself, or nobody can tell.
+    pub(super) fn has_opened(&self) -> bool {
+        matches!(self.stage, Stage::Open { .. } | Stage::Look { ends_trial: false, .. }) || self.blind > BLIND
     }
 
     /// Where a device never says how long it draws, nothing can be weighed.
@@ -166,128 +214,112 @@ impl Gate {
         self.blind > BLIND
     }
 
+    /// Whether a gate that is shut sees frames that take longer than asking did. The more trials have
+    /// failed, the longer that must have been ago.
+    fn drawing_is_dearer(&self) -> bool {
+        self.failure.is_some_and(|Failure { asking, wait, waited, .. }| {
+            let all = &self.book.drawing_all;
+            waited >= wait / 8
+                && all.is_settled()
+                && all.lately().is_some_and(|lately| lately > DEARER * asking)
+        })
+    }
+
     /// Ends a trial or a look.
     fn judge(&mut self, last: FrameCost) {
         match self.stage {
-            Stage::Trial { asked } if asked > 0 => {
-                let (Some(whole), Some(asking)) = (self.book.whole(self.in_view), self.book.asking) else {
-                    return;
-                };
-                if asked == TRIAL / 2 {
-                    self.book.asking = None;
-                } else if asked >= TRIAL && asking < whole {
-                    self.failure = None;
-                    self.patience = PATIENCE;
-                    self.look_every = FIRST_LOOK;
-                    self.open();
-                } else if asked >= TRIAL || asked > 1 && last.total > RUINOUS * whole {
-                    self.shut();
-                }
-            }
-            Stage::Look { drawn: LOOK } => {
-                if self.book.asking.is_some_and(|asking| asking > last.total) {
-                    self.shut();
+            Stage::Trial { asked } if asked > 0 => self.judge_trial(asked, last),
+            Stage::Look { drawn: LOOK.., ends_trial } => {
+                let asking = self.book.asking.lately().unwrap_or(0.0);
+                if asking > last.total {
+                    // What the next trial would lose, until it is so small a part of the time.
+                    let lost = TRIAL as f32 * (asking - last.total) / (SPEND * last.total);
+                    self.shut(asking, if ends_trial { lost as u32 } else { 0 });
                 } else {
-                    self.look_every = (2 * self.look_every).min(LAST_LOOK);
-                    self.open();
+                    self.open(LOOK as f32 * (last.total - asking));
                 }
             }
             _ => {}
         }
     }
 
-    fn open(&mut self) {
-        self.stage = Stage::Open { until_count: 0, until_look: self.look_every, in_doubt: false };
+    fn judge_trial(&mut self, asked: u32, last: FrameCost) {
+        let (Some(whole), Some(asking)) = (self.book.whole(self.in_view), self.book.asking.lately()) else {
+            return;
+        };
+        if asked == 1 {
+            // It builds what all later ones use.
+            return self.book.asking.clear();
+        }
+        let goes_on = match self.book.asking.trend() {
+            // One such frame may have been held up, or be a device's word on the first.
+            None => {
+                let is_ruinous = asking > RUINOUS * whole && asked > 2;
+                !is_ruinous && last.total < RUINOUS * RUINOUS * whole
+            }
+            Some(_) if asking < SURE * whole => return self.open(0.0),
+            Some(trend) => {
+                let in_the_end = asking * trend.powi(LONGEST_TRIAL.saturating_sub(asked) as i32);
+                asking > whole && in_the_end < whole
+            }
+        };
+        if !goes_on {
+            self.stage = Stage::Look { drawn: 0, ends_trial: true };
+        }
     }
 
-    fn shut(&mut self) {
-        self.failure = Some(Failure { hidden: None, wait: self.patience });
+    /// After a look that lost so many seconds.
+    fn open(&mut self, lost: f32) {
+        if self.failure.take().is_some() {
+            self.patience = (self.patience / 2).max(PATIENCE);
+        }
+        self.look_lost = lost;
+        self.stage = Stage::Open { until_count: 0, frames: 0, looks: false };
+    }
+
+    /// Asking takes so many seconds a frame; so many frames pass at least before it is tried again.
+    fn shut(&mut self, asking: f32, wait: u32) {
+        let wait = wait.clamp(self.patience, MOST_PATIENCE);
+        self.failure = Some(Failure { hidden: None, asking, wait, waited: 0 });
         self.patience = (2 * self.patience).min(MOST_PATIENCE);
+        self.book.drawing_all.clear();
         self.stage = Stage::Shut { until_probe: 0, interval: 1 };
     }
 
     fn advance(&mut self) -> Plan {
+        let is_dearer = self.drawing_is_dearer();
         match &mut self.stage {
             Stage::Shut { until_probe, .. } => {
-                if let Some(Failure { wait, .. }) = &mut self.failure {
-                    *wait = wait.saturating_sub(1);
+                if let Some(Failure { wait, waited, .. }) = &mut self.failure {
+                    *waited = waited.saturating_add(1);
+                    if waited == wait || is_dearer {
+                        *until_probe = 0;
+                    }
                 }
                 let probe = *until_probe == 0;
                 *until_probe = until_probe.saturating_sub(1);
                 Plan::Whole { probe }
             }
             // It is not known yet what there is to beat.
-            Stage::Trial { asked: 0 } if self.book.object.is_none() => Plan::Whole { probe: false },
+            Stage::Trial { asked: 0 } if self.book.whole(1.0).is_none() => Plan::Whole { probe: false },
             Stage::Trial { asked } => {
                 *asked += 1;
                 Plan::Ask { count: false }
             }
-            Stage::Open { until_look: 0, in_doubt: true, .. } => {
-                self.stage = Stage::Look { drawn: 1 };
+            Stage::Open { looks: true, .. } => {
+                self.stage = Stage::Look { drawn: 1, ends_trial: false };
                 Plan::Whole { probe: false }
             }
-            Stage::Open { until_count, until_look, .. } => {
-                *until_look = until_look.saturating_sub(1);
+            Stage::Open { until_count, frames, .. } => {
+                *frames += 1;
                 let count = *until_count == 0;
                 *until_count = until_count.checked_sub(1).unwrap_or(COUNT_EVERY - 1);
                 Plan::Ask { count }
             }
-            Stage::Look { drawn } => {
+            Stage::Look { drawn, .. } => {
                 *drawn += 1;
                 Plan::Whole { probe: false }
             }
         }
     }
-}
-
-/// What frames took.
-#[derive(Clone, Debug, Default)]
-struct Book {
-    /// Of a frame drawn whole, seconds an object.
-    object: Option<f32>,
-    /// Of a frame that asks, seconds.
-    asking: Option<f32>,
-    /// Of the drawing of a frame that asks, seconds an object: lately, and when [`Book::object`]
-    /// was still new. The first over the second says how much dearer objects have become since.
-    drawing: Option<f32>,
-    drawing_then: Option<f32>,
-}
-
-impl Book {
-    fn is_empty(&self) -> bool {
-        self.object.is_none() && self.asking.is_none()
-    }
-
-    fn enter(&mut self, plan: Plan, cost: FrameCost, is_verdict: bool) {
-        let each = |seconds: f32| seconds / cost.drawn.max(1) as f32;
-        match plan {
-            // A probe is no part of drawing; and the first frame, which has one, is like no other.
-            Plan::Whole { probe: true } => {}
-            Plan::Whole { probe: false } => {
-                let before = self.object.filter(|_| !is_verdict);
-                self.object = Some(smooth(before, each(cost.total)));
-                (self.drawing, self.drawing_then) = (None, None);
-            }
-            Plan::Ask { .. } => {
-                self.asking = Some(smooth(self.asking, cost.total));
-                let drawing = smooth(self.drawing, each(cost.draw));
-                self.drawing = Some(drawing);
-                self.drawing_then.get_or_insert(drawing);
-            }
-        }
-    }
-
-    /// What a frame would take that draws so many objects and asks nothing, seconds.
-    fn whole(&self, objects: f32) -> Option<f32> {
-        let dearer = match (self.drawing, self.drawing_then) {
-            (Some(now), Some(then)) if then > 0.0 => (now / then).clamp(0.25, 4.0),
-            _ => 1.0,
-        };
-        Some(self.object? * objects * dearer)
-    }
-}
-
-fn smooth(before: Option<f32>, now: f32) -> f32 {
-    const WEIGHT: f32 = 0.25;
-    before.map_or(now, |before| before + WEIGHT * (now - before))
 }

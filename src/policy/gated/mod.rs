@@ -20,8 +20,11 @@
 //! A device without a clock tells nothing ([`DrawTime::Unknown`](crate::query::DrawTime::Unknown)):
 //! after some frames the gate opens for good.
 
+mod book;
 mod gate;
 mod probe;
+#[cfg(test)]
+mod replay;
 
 use std::slice;
 
@@ -98,6 +101,11 @@ impl<P: Policy> Gated<P> {
     /// A probe's answers are awaited.
     fn can_be_gated(&self) -> bool {
         self.policy.asks() && self.policy.needs_blocking()
+    }
+
+    /// Whether the policy asks, and not for a trial. Without a gate it does.
+    pub(super) fn has_opened(&self) -> bool {
+        !self.has_gate() || self.state.has_opened()
     }
 
     fn own_dials(&self) -> Vec<Dial> {
