@@ -5,6 +5,8 @@
 //! An answer that does not come is *unknown*, which draws; one that nobody waits for is dropped.
 
 mod why;
+#[cfg(test)]
+mod wrap;
 
 use std::time::{Duration, Instant};
 
@@ -110,8 +112,7 @@ impl<P: Policy> Culler<P> {
         if is_cut {
             self.policy.cut();
         }
-        // Frame 0 is never drawn: it stands for "never".
-        self.frame = self.frame.wrapping_add(1).max(1);
+        self.count_frame();
         self.open.clear();
         self.drawn.begin(scene, self.frame);
         self.drawn.owned = self.policy.asks_owners();
@@ -198,6 +199,17 @@ impl<P: Policy> Culler<P> {
         }
         self.votes.costs = self.costs;
         Ok(stats)
+    }
+
+    /// Frame 0 is never drawn: it stands for "never". After 2³² − 1 frames the numbers begin again, and with
+    /// them all memories: what was noted in the frame that had this number before is not of this one.
+    fn count_frame(&mut self) {
+        self.frame = self.frame.wrapping_add(1);
+        if self.frame == 0 {
+            self.frame = 1;
+            self.policy.reset();
+            self.drawn.forget();
+        }
     }
 }
 
