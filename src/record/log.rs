@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::query::{Answer, DrawTime, KeptAnswer, QueryBackend, Sweep, Ticket, Wait, Want};
-use crate::scene::ObjectRef;
+use crate::scene::{ObjectRef, Scene};
 
 /// The questions of a frame, in short, and the answers, delivery by delivery.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -21,6 +21,16 @@ pub(super) struct Delivery {
     pub(super) answers: Vec<(u32, KeptAnswer)>,
     /// What the backend reported instead of success, in words.
     pub(super) error: Option<String>,
+}
+
+impl Delivery {
+    /// Whether all objects that its answers name are in the scene. O(objects named).
+    pub(super) fn is_about(&self, scene: &Scene) -> bool {
+        self.answers.iter().all(|(_, answer)| match answer {
+            KeptAnswer::Swept(found) => found.slots().all(|slot| scene.has_slot(slot)),
+            _ => true,
+        })
+    }
 }
 
 /// How much was asked.
