@@ -16,13 +16,15 @@ use crate::boxes::{self, Place};
 const SCREEN: Viewport = Viewport::new(320, 180);
 /// Frames until the camera, and what moves, is where it was.
 const PERIOD: usize = 64;
+/// Of what stands side by side.
+const COLUMNS: usize = 100;
 
 /// What a world has, and who looks at it.
 #[derive(Clone, Copy)]
 pub struct Setup {
     /// Boxes, the wall apart.
     pub objects: usize,
-    /// A wall that hides most of them.
+    /// A wall that hides most of them; without, they stand side by side.
     pub wall: bool,
     /// Whether all of them move.
     pub moving: bool,
@@ -33,8 +35,18 @@ pub struct Setup {
     /// Whether the policy stands behind a gate.
     pub gated: bool,
     pub detects_cuts: bool,
-    /// Whether the scene follows its world and the tree the votes, every frame.
-    pub upkeep: bool,
+    /// What is done every frame besides culling.
+    pub upkeep: Upkeep,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub enum Upkeep {
+    /// The scene looks for what has changed in the app's world, and the tree follows the votes.
+    Sync,
+    /// The app says that nothing has changed; the tree follows the votes.
+    Update,
+    /// None.
+    Nothing,
 }
 
 impl Default for Setup {
@@ -48,7 +60,7 @@ impl Default for Setup {
             policy: "dual-query",
             gated: false,
             detects_cuts: false,
-            upkeep: true,
+            upkeep: Upkeep::Sync,
         }
     }
 }
@@ -104,9 +116,15 @@ impl Lane {
     pub fn new(setup: Setup) -> Self {
         let mut world = World::new();
         let part = |i: usize, step: f32| (i as f32 * step).fract() * 2.0 - 1.0;
-        let places = (0..setup.objects).map(|i| {
-            let at = [part(i, 0.819_173), part(i, 0.671_044), part(i, 0.5497)];
-            Place::new(Vec3::from(at) * Vec3::new(30.0, 12.0, 30.0) - Vec3::Z * 34.0, Vec3::splat(0.3))
+        let places = (0..setup.objects).map(|i| match setup.wall {
+            true => {
+                let at = Vec3::new(part(i, 0.819_173), part(i, 0.671_044), part(i, 0.5497));
+                Place::new(at * Vec3::new(30.0, 12.0, 30.0) - Vec3::Z * 34.0, Vec3::splat(0.3))
+            }
+            false => {
+                let (column, row) = ((i % COLUMNS) as f32, (i / COLUMNS) as f32);
+                Place::new(Vec3::new(column - 0.5 * COLUMNS as f32, row - 20.0, 0.0) * 0.4, Vec3::splat(0.1))
+            }
         });
         let entities: Vec<_> = places.map(|place| boxes::spawn(&mut world, place)).collect();
         if setup.wall && setup.objects > 0 {
@@ -116,17 +134,22 @@ impl Lane {
             extra.dress(&mut world, &entities);
         }
         // What asking costs on this machine is to decide nothing.
-        let tree = TreeConfig { leaf_size: LeafSize::Fixed, unasked_leaf: 2, ..TreeConfig::default() };
+        let tree = TreeConfig { leaf_size: LeafSize::Fixed, ..TreeConfig::default() };
         let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
-        scene.sync(&world);
         let eye = || {
-            let policy = policy::by_name(setup.policy).expect("a policy of that name");
+            let mut policy = policy::by_name(setup.policy).expect("a policy of that name");
+            if setup.policy == "dual-query" {
+                policy.set("n_skip", "0").expect("its dial");
+            }
             let policy: Box<dyn Policy> = if setup.gated { Box::new(Gated::new(policy)) } else { policy };
             let mut eye = Culler::new(policy);
             eye.detects_cuts = setup.detects_cuts;
             (eye, SoftwareQueries::new())
         };
-        let eyes = (0..setup.views).map(|_| eye()).collect();
+        let mut eyes: Vec<_> = (0..setup.views).map(|_| eye()).collect();
+        // The tree knows from the start whether anybody asks about its nodes.
+        scene.adapt(eyes.iter_mut().map(|(eye, _)| eye));
+        scene.sync(&world);
         Self { setup, world, scene, eyes, passes: 0, stats: FrameStats::default() }
     }
 
@@ -144,8 +167,10 @@ impl Lane {
         let view = View::look_at(eye, Vec3::ZERO, 60.0, 0.1, SCREEN).expect("a view");
         let Self { setup, world, scene, eyes, passes, stats } = self;
         let start = Instant::now();
-        if setup.upkeep {
-            scene.sync(world);
+        match setup.upkeep {
+            Upkeep::Sync => drop(scene.sync(world)),
+            Upkeep::Update => drop(scene.update()),
+            Upkeep::Nothing => {}
         }
         for (eye, queries) in &mut *eyes {
             *passes = 0;
@@ -155,7 +180,7 @@ impl Lane {
             };
             *stats = eye.frame(scene, &view, queries, draw).expect("a frame");
         }
-        if setup.upkeep {
+        if setup.upkeep != Upkeep::Nothing {
             scene.adapt(eyes.iter_mut().map(|(eye, _)| eye));
         }
         start.elapsed().as_secs_f64() / setup.views as f64

@@ -20,7 +20,7 @@ use std::time::Instant;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 use interval::Ratio;
-use lane::{Extra, Lane, Setup};
+use lane::{Extra, Lane, Setup, Upkeep};
 
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
@@ -51,9 +51,14 @@ fn rows() -> Vec<Row> {
             Setup { objects: 0, policy: "frustum", ..bare },
         ),
         row(
-            "static only: `sync` and `adapt` every frame, beside neither",
+            "static only: `update` and `adapt` every frame, beside neither",
+            Setup { upkeep: Upkeep::Update, ..bare },
+            Setup { upkeep: Upkeep::Nothing, ..bare },
+        ),
+        row(
+            "static only: `sync`, which looks for changes, beside `update`",
             bare,
-            Setup { upkeep: false, ..bare },
+            Setup { upkeep: Upkeep::Update, ..bare },
         ),
         row(
             "static only: `hybrid`, which sweeps movers apart, beside `hroc`",
@@ -86,9 +91,9 @@ fn rows() -> Vec<Row> {
 fn main() {
     let only: Vec<String> = env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
     println!(
-        "| this, beside that | passes | questions | boxes | allocations | pairs | blocks | at most 3 % slower |"
+        "| this, beside that | passes | questions | boxes | allocations | µs | pairs | blocks | at most 3 % slower |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     // Threads that hand work to each other take time and memory that are not ours.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
     for Row { name, one, other } in rows() {
@@ -131,5 +136,11 @@ fn compare(name: &str, one: Setup, other: Setup) {
     let [counts_a, counts_b] = allocations;
     let ratio = Ratio::of(&pairs)
         .map_or("too slow here | – | –".to_owned(), |ratio| format!("{ratio} | {}", ratio.verdict(SAME)));
-    println!("| {name} | {} | {counts_a} beside {counts_b} | {ratio} |", counts.join(" | "));
+    let median = |of: fn(&(f64, f64)) -> f64| {
+        let mut times: Vec<f64> = pairs.iter().map(of).collect();
+        times.sort_by(f64::total_cmp);
+        times.get(times.len() / 2).map_or(f64::NAN, |time| 1e6 * time)
+    };
+    let times = format!("{:.1} beside {:.1}", median(|pair| pair.0), median(|pair| pair.1));
+    println!("| {name} | {} | {counts_a} beside {counts_b} | {times} | {ratio} |", counts.join(" | "));
 }
