@@ -215,7 +215,10 @@ impl<P: Policy> Culler<P> {
 
 impl<P> Culler<P> {
     /// Says that the next frame has nothing to do with those before: another place, another time.
-    /// What they showed is forgotten, so that the next frame is as dear as a first one, and no dearer.
+    /// What they showed is forgotten, so that the next frame is as dear as a first one, and no dearer: it
+    /// looks at no more nodes, asks no more and draws no more. `chc++` and `auto` keep what they have learned of
+    /// worlds in general: the former may then ask about the same nodes in other multiqueries, the latter in
+    /// another way than a first frame.
     /// Nothing is ever lost without it. A jump that leaves next to nothing of the last frame in view can be
     /// found without being announced ([`Culler::detects_cuts`]).
     pub fn cut(&mut self) {
