@@ -35,7 +35,7 @@ pub fn run(bytes: &[u8]) {
         alter(&mut chunks, &mut u);
     }
     let frames = chunks.len().saturating_sub(1) as u32;
-    play(&file(&chunks, if kind % 2 == 0 { frames } else { u.arbitrary().unwrap_or(frames) }));
+    play(&file(&chunks, if kind.is_multiple_of(2) { frames } else { u.arbitrary().unwrap_or(frames) }));
 }
 
 /// To the end, or to the first error.

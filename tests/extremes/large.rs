@@ -54,7 +54,7 @@ fn check(side: u32) {
         (occluder, 20.0),
         (Rect { min: occluder.min - 1.0, max: occluder.max + 1.0 }, 20.0),
         // Half behind it.
-        (Rect::new([0.0, 6.0 * part], [-1.0 * part, 2.0 * part]), 20.0),
+        (Rect::new([0.0, 6.0 * part], [-part, 2.0 * part]), 20.0),
     ];
     let mut queries = SoftwareQueries::new();
     queries.begin(&view).expect("begin");
