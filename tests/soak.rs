@@ -61,7 +61,7 @@ struct Most {
 /// One test: memory is counted for the whole process.
 #[test]
 fn what_is_held_is_bounded_by_what_is_there() {
-    let frames: u32 = std::env::var("TERCET_FRAMES").map_or(800, |n| n.parse().expect("a whole number"));
+    let frames: u32 = std::env::var("TERCET_FRAMES").map_or(2000, |n| n.parse().expect("a whole number"));
     // Threads that hand work to each other take memory now and then, which is not ours.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
     pool.install(|| soak(frames));
