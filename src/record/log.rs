@@ -24,10 +24,11 @@ pub(super) struct Delivery {
 }
 
 impl Delivery {
-    /// Whether all objects that its answers name are in the scene. O(objects named).
+    /// Whether all slots that its answers name are those of objects, or of some that are gone: answers may
+    /// be late. O(objects named).
     pub(super) fn is_about(&self, scene: &Scene) -> bool {
         self.answers.iter().all(|(_, answer)| match answer {
-            KeptAnswer::Swept(found) => found.slots().all(|slot| scene.has_slot(slot)),
+            KeptAnswer::Swept(found) => found.slots().all(|slot| slot < scene.slot_bound()),
             _ => true,
         })
     }

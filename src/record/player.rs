@@ -110,7 +110,7 @@ impl<R: Read> Player<R> {
             scene.redo(edit, &mut [&mut *eye]);
         }
         if !frame.log.deliveries.iter().all(|delivery| delivery.is_about(scene)) {
-            return Err(failed(format!("frame {number} was answered about objects that are not there")));
+            return Err(failed(format!("frame {number} was answered about objects that were never there")));
         }
         let view = frame.view.view()?;
         eye.tradeoff = frame.tradeoff;

@@ -184,12 +184,6 @@ impl Scene {
         if self.pending == 0 { Ok(()) } else { Err(Error::PendingEdits(self.pending)) }
     }
 
-    /// Whether a slot is that of an object.
-    #[cfg(feature = "record")]
-    pub(crate) fn has_slot(&self, slot: usize) -> bool {
-        slot < self.objects.slot_bound() && self.objects.place(slot as u32) != Place::Free
-    }
-
     pub(crate) fn objects_store(&self) -> &Objects {
         &self.objects
     }
