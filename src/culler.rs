@@ -7,6 +7,8 @@
 mod drawn;
 mod open;
 mod why;
+#[cfg(test)]
+mod wrap;
 
 use std::time::{Duration, Instant};
 
@@ -124,8 +126,7 @@ impl<P: Policy> Culler<P> {
         if is_cut {
             self.policy.cut();
         }
-        // Frame 0 is never drawn: it stands for "never".
-        self.frame = self.frame.wrapping_add(1).max(1);
+        self.count_frame();
         self.open.clear();
         self.drawn.begin(scene, self.frame);
         self.drawn.owned = self.policy.asks_owners();
@@ -227,11 +228,25 @@ impl<P: Policy> Culler<P> {
         self.votes.costs = self.costs;
         Ok(stats)
     }
+
+    /// Frame 0 is never drawn: it stands for "never". After 2³² − 1 frames the numbers begin again, and with
+    /// them all memories: what was noted in the frame that had this number before is not of this one.
+    fn count_frame(&mut self) {
+        self.frame = self.frame.wrapping_add(1);
+        if self.frame == 0 {
+            self.frame = 1;
+            self.policy.reset();
+            self.drawn.forget();
+        }
+    }
 }
 
 impl<P> Culler<P> {
     /// Says that the next frame has nothing to do with those before: another place, another time.
-    /// What they showed is forgotten, so that the next frame is as dear as a first one, and no dearer.
+    /// What they showed is forgotten, so that the next frame is as dear as a first one, and no dearer: it
+    /// looks at no more nodes, asks no more and draws no more. `chc++` and `auto` keep what they have learned of
+    /// worlds in general: the former may then ask about the same nodes in other multiqueries, the latter in
+    /// another way than a first frame.
     /// Nothing is ever lost without it. A jump that leaves next to nothing of the last frame in view can be
     /// found without being announced ([`Culler::detects_cuts`]).
     pub fn cut(&mut self) {

@@ -66,6 +66,12 @@ fn gltf() {
     drive("gltf");
 }
 
+#[cfg(feature = "record")]
+#[test]
+fn replay() {
+    drive("replay");
+}
+
 #[test]
 fn tree() {
     drive("tree");

@@ -7,6 +7,8 @@ pub mod geometry;
 #[cfg(feature = "gltf")]
 pub mod gltf;
 pub mod numbers;
+#[cfg(feature = "record")]
+pub mod replay;
 pub mod tree;
 
 /// Runs the body of a target; false if there is no target of that name.
@@ -16,6 +18,8 @@ pub fn run(target: &str, bytes: &[u8]) -> bool {
         "geometry" => geometry::run(bytes),
         #[cfg(feature = "gltf")]
         "gltf" => gltf::run(bytes),
+        #[cfg(feature = "record")]
+        "replay" => replay::run(bytes),
         "tree" => tree::run(bytes),
         _ => return false,
     }

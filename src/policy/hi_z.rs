@@ -5,7 +5,7 @@
 //! It finds more than [`Roc`](super::Roc) does, and each test is shorter.
 
 use super::Context;
-use super::plan::{First, Plan, Targets};
+use super::plan::{First, Plan, Targets, everything};
 use super::two_phase::TwoPhase;
 use crate::query::SweepTest;
 
@@ -21,6 +21,6 @@ impl Plan for EveryRectangle {
     const TEST: SweepTest = SweepTest::HiZ;
 
     fn plan(&mut self, cx: &Context<'_>, _: &First, targets: &mut Targets) {
-        targets.groups.push(cx.tree.root());
+        everything(cx, targets);
     }
 }

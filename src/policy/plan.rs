@@ -61,6 +61,14 @@ pub struct Targets {
     pub loose: Vec<ObjectId>,
 }
 
+/// Every object, unless none can be in view: then nothing is swept.
+pub(super) fn everything(cx: &Context<'_>, targets: &mut Targets) {
+    let root = cx.tree.root();
+    if cx.tree.count(root) > 0 && cx.frustum.intersects(&cx.tree.bounds(root)) {
+        targets.groups.push(root);
+    }
+}
+
 /// The own objects of a node that meet the frustum, by slot.
 pub(super) fn each_own(cx: &Context<'_>, node: NodeId, mut found: impl FnMut(u32)) {
     let Some(mask) = cx.frustum.classify(&cx.tree.bounds(node), PlaneMask::ALL) else { return };

@@ -2,7 +2,7 @@
 //! then the box of every object in the frustum is rasterised by itself.
 
 use super::Context;
-use super::plan::{First, Plan, Targets};
+use super::plan::{First, Plan, Targets, everything};
 use super::two_phase::TwoPhase;
 use crate::query::SweepTest;
 
@@ -18,6 +18,6 @@ impl Plan for EveryBox {
     const TEST: SweepTest = SweepTest::Raster;
 
     fn plan(&mut self, cx: &Context<'_>, _: &First, targets: &mut Targets) {
-        targets.groups.push(cx.tree.root());
+        everything(cx, targets);
     }
 }

@@ -6,7 +6,7 @@ use super::chunk::RecordedView;
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::query::{Answer, DrawTime, KeptAnswer, QueryBackend, Sweep, Ticket, Wait, Want};
-use crate::scene::ObjectRef;
+use crate::scene::{ObjectRef, Scene};
 
 /// The questions of a frame, in short, and the answers, delivery by delivery.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -26,6 +26,17 @@ pub(super) struct Delivery {
     pub(super) answers: Vec<(u32, KeptAnswer)>,
     /// What the backend reported instead of success, in words.
     pub(super) error: Option<String>,
+}
+
+impl Delivery {
+    /// Whether all slots that its answers name are those of objects, or of some that are gone: answers may
+    /// be late. O(objects named).
+    pub(super) fn is_about(&self, scene: &Scene) -> bool {
+        self.answers.iter().all(|(_, answer)| match answer {
+            KeptAnswer::Swept(found) => found.slots().all(|slot| slot < scene.slot_bound()),
+            _ => true,
+        })
+    }
 }
 
 /// How much was asked.

@@ -109,6 +109,9 @@ impl<R: Read> Player<R> {
         for edit in &frame.edits {
             scene.redo(edit, &mut [&mut *eye]);
         }
+        if !frame.log.deliveries.iter().all(|delivery| delivery.is_about(scene)) {
+            return Err(failed(format!("frame {number} was answered about objects that were never there")));
+        }
         let view = frame.view.view()?;
         eye.tradeoff = frame.tradeoff;
         if frame.cut {

@@ -232,3 +232,31 @@ fn entry<T: Clone + Default>(array: &mut Vec<T>, slot: u32) -> &mut T {
     }
     &mut array[s]
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+
+    /// A slot is given out as long as it has generations; then it is retired, and the next object gets
+    /// another. No handle is valid again.
+    #[test]
+    fn generations_that_are_used_up_name_nobody_twice() {
+        let mut objects = Objects::default();
+        let first = objects.insert(Entity::DANGLING, Traits::default());
+        // As if the slot had been given out nearly as often as it can be.
+        objects.generation[0] += SPECIAL - 6 - first.generation();
+        let mut given = HashSet::new();
+        let mut id = objects.id(0);
+        for _ in 0..10 {
+            assert!(given.insert(id), "{id:?} was given out before");
+            assert!(id.generation() < SPECIAL - 1 && objects.is_plain(id));
+            objects.remove(objects.slot(id).expect("it is there"));
+            assert!(given.iter().all(|&old| objects.slot(old).is_none() && !objects.is_plain(old)));
+            id = objects.insert(Entity::DANGLING, Traits::default());
+        }
+        assert_eq!((objects.slot_bound(), objects.len()), (2, 1), "one slot was retired");
+        assert_eq!(id.slot(), 1);
+    }
+}

@@ -306,3 +306,31 @@ pub(crate) fn side(aabb: &Aabb, axis: usize, plane: f32) -> Role {
         Role::Straddle
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Identities begin again after 2³² owners of an index: a handle is still told from those of the
+    /// owners before and after it. One that is 2³² owners old is not, and need not be: what is remembered
+    /// by it decides what is asked, never what is hidden.
+    #[test]
+    fn identities_that_wrap_are_told_apart() {
+        let mut nodes = Nodes::with_root();
+        nodes.cell[0] = Aabb::new(Vec3::ZERO, Vec3::ONE);
+        let first = nodes.split(0, 0, 0.5, 1);
+        nodes.join(0, 1);
+        nodes.identity[first as usize..].fill(u32::MAX - 5);
+        let mut old: Vec<NodeId> = Vec::new();
+        for _ in 0..8 {
+            assert_eq!(nodes.split(0, 0, 0.5, 1), first, "the same indices");
+            let ids = nodes.children(0).map(|child| nodes.id(child));
+            let ids: Vec<_> = ids.collect();
+            assert!(ids.iter().all(|&id| nodes.is_current(id) && !old.contains(&id)));
+            nodes.join(0, 1);
+            old.extend(ids);
+            assert!(old.iter().all(|&id| !nodes.is_current(id)));
+        }
+        assert!(old.iter().any(|id| id.identity() < 5), "they have wrapped: {old:?}");
+    }
+}

@@ -9,6 +9,7 @@ mod exact;
 mod flight;
 mod frames;
 mod geometry;
+mod large;
 mod strategies;
 
 /// A number from the environment, for runs that are longer or are to be repeated.
