@@ -101,7 +101,7 @@ impl Lane {
     pub fn with_tradeoff(mut self, tradeoff: Tradeoff) -> Self {
         let detail = tradeoff.detail(self.detail());
         self.eye.tradeoff = tradeoff;
-        self.stage = SoftwareStage::new(detail);
+        self.stage.set_detail(detail);
         self.reference.painter.detail = detail;
         self
     }
