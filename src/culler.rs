@@ -23,7 +23,10 @@ use crate::query::{Answer, DrawTime, QueryBackend, Sweep, Wait};
 use crate::scene::{ObjectRef, Scene};
 use crate::stats::FrameStats;
 use crate::tree::{NodeId, Votes};
-use crate::{Costs, Error, Tradeoff};
+use crate::{Costs, Error, Latency, Tradeoff};
+
+/// More than the frames of which a depth is kept.
+const KEPT_UPDATES: usize = Latency::MOST as usize + 1;
 
 /// What one camera sees: a policy with its history, and the visible list of the last frame.
 #[derive(Debug)]
@@ -37,6 +40,10 @@ pub struct Culler<P> {
     divisor: u32,
     /// The frame whose depth its questions saw, if it was an earlier one.
     past: Option<Past>,
+    /// By frame, modulo their number: how many updates the tree had seen.
+    updates: [u32; KEPT_UPDATES],
+    /// The tradeoff of the last frame, in pixels of its depth.
+    applied: Tradeoff,
     /// The scene, and the making of its tree, that the history is about; 0 for none yet.
     scene: (u64, u64),
     drawn: DrawnList,
@@ -64,6 +71,8 @@ impl<P: Policy> Culler<P> {
             frame: 0,
             divisor: 1,
             past: None,
+            updates: [0; KEPT_UPDATES],
+            applied: Tradeoff::EXACT,
             scene: (0, 0),
             drawn: DrawnList::default(),
             open: OpenQuestions::default(),
@@ -94,6 +103,8 @@ impl<P: Policy> Culler<P> {
         let result = self.try_frame(scene, view, queries, draw);
         if result.is_err() {
             self.drawn.forget();
+            // They are of the frame before.
+            self.costs = self.costs.without_last();
         }
         result
     }
@@ -131,12 +142,18 @@ impl<P: Policy> Culler<P> {
         self.drawn.begin(scene, self.frame);
         self.drawn.owned = self.policy.asks_owners();
         let tradeoff = self.tradeoff.at_resolution(self.divisor);
+        self.applied = tradeoff;
         // What was seen from elsewhere, or of another scene, says nothing of this frame.
         let late = if is_cut || is_other { 0 } else { tradeoff.latency.frames() };
         self.past = match late {
             0 => queries.begin(view).map(|()| None)?,
-            _ => queries.begin_late(view, late)?.map(|past| Past::new(past, late, view, tradeoff.swept)),
+            _ => queries.begin_late(view, late)?.map(|past| {
+                let then = self.frame.wrapping_sub(late) as usize % self.updates.len();
+                let updates = scene.tree().tick().wrapping_sub(self.updates[then]);
+                Past::new(past, view, tradeoff.swept.then_some(updates))
+            }),
         };
+        self.updates[self.frame as usize % KEPT_UPDATES] = scene.tree().tick();
         let mut purse = Purse::new(tradeoff.budget, start);
         let (frame, costs) = (self.frame, self.costs);
         let (tree, past) = (scene.tree(), self.past.as_ref());
@@ -204,11 +221,13 @@ impl<P: Policy> Culler<P> {
             }
         }
         self.drawn.flush(queries, &mut draw, &mut stats)?;
-        self.drawn.flush_late(queries, &mut draw, &mut stats)?;
+        self.drawn.flush_last(queries, &mut draw, &mut stats)?;
+        // Also if asking failed: what was drawn is to be seen.
+        let ended = queries.end();
         if let Some(error) = failure {
             return Err(error);
         }
-        queries.end()?;
+        ended?;
         // Votes that nobody took before are out of date.
         self.votes.clear();
         self.policy.vote(&mut self.votes);

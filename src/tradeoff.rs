@@ -52,8 +52,9 @@ pub enum Latency {
     /// That of the frame itself, as far as it is drawn: exact.
     #[default]
     SameFrame,
-    /// The finished depth of so many frames ago, 1 to [`Latency::MOST`], seen with that frame's view:
-    /// nothing is waited for. It is approximate by nature: an occluder may have left since, and the camera
+    /// The finished depth of so many frames ago, 1 to [`Latency::MOST`], seen with that frame's view: none of
+    /// this frame's draws is waited for. The backend counts its own frames, so it must be this view's alone.
+    /// It is approximate by nature: an occluder may have left since, and the camera
     /// may have moved. What was not wholly in that view is drawn. Backends that keep no depth answer as
     /// ever; sweeps do, too.
     Late(u32),
@@ -79,7 +80,7 @@ impl Latency {
 pub struct Budget {
     /// Questions.
     pub queries: Option<u32>,
-    /// Pixels of the rectangles around the boxes asked about; those of a sweep are not counted.
+    /// Pixels of the view in the rectangles around the boxes asked about; those of a sweep are not counted.
     pub box_pixels: Option<u64>,
     /// Since the frame began.
     pub time: Option<Duration>,
@@ -140,7 +141,10 @@ impl Tradeoff {
 
     /// The same for a depth with so many times fewer columns and rows: pixels are its own.
     pub(crate) fn at_resolution(&self, divisor: u32) -> Self {
-        Self { visible_pixels: self.visible_pixels / divisor.saturating_mul(divisor).max(1), ..*self }
+        let area = divisor.saturating_mul(divisor).max(1);
+        let box_pixels = self.budget.box_pixels.map(|pixels| pixels / u64::from(area));
+        let budget = Budget { box_pixels, ..self.budget };
+        Self { visible_pixels: self.visible_pixels / area, budget, ..*self }
     }
 
     /// Its dials by name, with what they do; `none` leaves one to whoever else sets it.

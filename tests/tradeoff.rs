@@ -191,7 +191,10 @@ fn swept_boxes_lose_less() {
         let mut queries = SoftwareQueries::new();
         let mut lost = 0;
         for frame in 0..12 {
+            // Two updates a frame: what counts is what has moved since, not how often.
             cards.put(0, at(0.0, 0.0, -(frame as f32), 1.0));
+            cards.put(1, at(3.0, 0.0, -3.0 - 0.01 * frame as f32, 1.0));
+            cards.put(1, at(3.0, 0.0, -3.0, 1.0));
             let (drawn, _) = cards.frame(&mut eye, &view(0.0), &mut queries);
             lost += 2 - drawn.count_ones();
         }

@@ -208,8 +208,9 @@ impl Auditor {
     ) -> Result<(), Error> {
         let hides = |object: &ObjectRef| scene.object(object.id).is_none_or(|o| !o.traits.not_occluder);
         // What hides nothing was drawn after all questions.
-        let late = eye.visible().iter().position(|object| !hides(object)).unwrap_or(eye.visible().len());
-        let (occluders, late) = eye.visible().split_at(late);
+        let first_clear =
+            eye.visible().iter().position(|object| !hides(object)).unwrap_or(eye.visible().len());
+        let (occluders, clear) = eye.visible().split_at(first_clear);
         let decided = |lost: &FalseCull| lost.why.node().map(|node| node.bounds).or(lost.bounds);
         if eye.divisor() > 1 && !self.audit.lost.is_empty() {
             let counts = eye.tradeoff.at_resolution(eye.divisor()).visible_pixels > 0;
@@ -219,7 +220,7 @@ impl Auditor {
             self.recount(&coarse, draw, asked, |suspect| suspect.coarse.insert(Recount::Visible))?;
         }
         self.recount(view, |pass| draw(pass, occluders), decided, |suspect| &mut suspect.full)?;
-        self.queries.draw(|pass| draw(pass, late))?;
+        self.queries.draw(|pass| draw(pass, clear))?;
         self.queries.end()?;
         self.audit.wrong_pixels = self.oracle.wrong_pixels(&self.queries);
         Ok(())

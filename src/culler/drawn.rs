@@ -15,7 +15,7 @@ pub(super) struct DrawnList {
     /// To be drawn with the next flush.
     queue: Vec<ObjectRef>,
     /// No occluders: to be drawn last.
-    late: Vec<ObjectRef>,
+    last: Vec<ObjectRef>,
     pub(super) visible: Vec<ObjectRef>,
     pub(super) entered: Vec<ObjectRef>,
     previous: Vec<ObjectRef>,
@@ -53,7 +53,7 @@ impl DrawnList {
     pub(super) fn begin(&mut self, scene: &Scene, frame: u32) {
         self.frame = frame;
         self.queue.clear();
-        self.late.clear();
+        self.last.clear();
         self.entered.clear();
         std::mem::swap(&mut self.visible, &mut self.previous);
         self.visible.clear();
@@ -73,7 +73,7 @@ impl DrawnList {
         if generation != object.id.generation() || frame == 0 || frame != self.frame.wrapping_sub(1) {
             self.entered.push(object);
         }
-        let list = if store.is_occluder(slot) { &mut self.queue } else { &mut self.late };
+        let list = if store.is_occluder(slot) { &mut self.queue } else { &mut self.last };
         list.push(object);
     }
 
@@ -129,13 +129,13 @@ impl DrawnList {
     }
 
     /// Draws what hides nothing, after everything else.
-    pub(super) fn flush_late<B: QueryBackend>(
+    pub(super) fn flush_last<B: QueryBackend>(
         &mut self,
         queries: &mut B,
         draw: &mut impl FnMut(&mut B::Pass, &[ObjectRef]),
         stats: &mut FrameStats,
     ) -> Result<bool, Error> {
-        std::mem::swap(&mut self.queue, &mut self.late);
+        std::mem::swap(&mut self.queue, &mut self.last);
         self.flush(queries, draw, stats)
     }
 

@@ -130,7 +130,7 @@ impl<P: Policy> Culler<P> {
     /// The last frame's context.
     fn context<'a>(&'a self, scene: &'a Scene, view: &'a View, frustum: &'a Frustum) -> Context<'a> {
         let (frame, costs) = (self.frame, self.costs);
-        let (tree, tradeoff, past) = (scene.tree(), &self.tradeoff, self.past.as_ref());
+        let (tree, tradeoff, past) = (scene.tree(), &self.applied, self.past.as_ref());
         Context { scene, tree, view, frustum, frame, tradeoff, costs, past }
     }
 }

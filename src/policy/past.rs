@@ -8,25 +8,26 @@ use crate::tree::{NodeId, Tree};
 pub struct Past {
     view: View,
     frustum: Frustum,
-    /// By how much boxes are enlarged, metres, and how long ago it was; None where they are not.
+    /// By how much boxes are enlarged, metres, and how many updates of the tree ago it was; None where they
+    /// are not.
     swept: Option<(f32, u32)>,
 }
 
 impl Past {
-    /// The frame of a view, `frames` before that of `now`. `swept` enlarges boxes by the way that the eye
-    /// has gone since, and has what moved since drawn unasked: seen from there, an object that goes away
-    /// is hidden by itself.
-    pub(crate) fn new(view: View, frames: u32, now: &View, swept: bool) -> Self {
+    /// The frame of a view, before that of `now`. `swept`, the updates of the tree since, enlarges boxes by
+    /// the way that the eye has gone, and has what moved since drawn unasked: seen from there, an object that
+    /// goes away is hidden by itself.
+    pub(crate) fn new(view: View, now: &View, swept: Option<u32>) -> Self {
         // An orthographic view has no eye: only how it looks counts.
         let way = (now.eye() - view.eye()).truncate().length();
         let frustum = Frustum::new(&view);
-        Self { view, frustum, swept: swept.then_some((way, frames)) }
+        Self { view, frustum, swept: swept.map(|updates| (way, updates)) }
     }
 
     /// What asking about a box of a node comes to.
     pub(super) fn question(&self, tree: &Tree, node: NodeId, aabb: &Aabb) -> Question {
         let aabb = match self.swept {
-            Some((_, frames)) if tree.has_moved_within(node, frames) => return Question::Visible,
+            Some((_, updates)) if tree.has_moved_within(node, updates) => return Question::Visible,
             Some((way, _)) => aabb.inflated(way),
             None => *aabb,
         };

@@ -81,7 +81,7 @@ impl<B> Faulty<B> {
         Self { inner, faults, dice, late, now, refused, asked: 0, frames: 0, doomed: false }
     }
 
-    /// Whether there is room for another question.
+    /// Begins a frame.
     fn start(&mut self) {
         self.asked = 0;
         self.refused.clear();
@@ -89,6 +89,7 @@ impl<B> Faulty<B> {
         self.frames += 1;
     }
 
+    /// Whether there is room for another question.
     fn has_room(&mut self, ticket: Ticket) -> bool {
         self.asked += 1;
         let has_room = self.faults.room.is_none_or(|room| self.asked <= room);

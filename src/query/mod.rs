@@ -109,7 +109,8 @@ pub trait QueryBackend {
     /// The same for a frame whose questions see the finished depth of `frames` frames ago, seen with that
     /// frame's view, which is returned: proxies are to be made with it. None if there is no such depth,
     /// because the backend keeps none, or frames begun in this way are too few yet: then questions see
-    /// this frame's, as ever. Sweeps always do. [`QueryBackend::begin`] lets go of what was kept.
+    /// this frame's, as ever. Sweeps always do. Frames are the backend's own:
+    /// one that several views share has no past of any. [`QueryBackend::begin`] lets go of what was kept.
     ///
     /// # Errors
     /// What the device reports.

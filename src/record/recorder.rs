@@ -70,7 +70,8 @@ impl<W: Write> Recorder<W> {
         });
     }
 
-    /// To be called after [`Culler::frame`], also after one that failed. O(answers + objects drawn).
+    /// To be called after [`Culler::frame`], also after one in which waiting for answers failed. One that failed
+    /// otherwise (its targets, its drawing) cannot be replayed: a player stops there. O(answers + objects drawn).
     ///
     /// # Errors
     /// [`Error::Recording`] if no frame has begun, if nobody listened to the backend, and if the file

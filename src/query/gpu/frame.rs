@@ -32,7 +32,7 @@ pub(super) struct Frame {
     /// The same for native queries, if there are any.
     native_bindings: Option<BindGroup>,
     /// Whether questions see an earlier depth.
-    is_late: bool,
+    pub(super) is_late: bool,
     /// How many depths are kept, this one's among them.
     keeps: usize,
     /// What was recorded since the last submission.
@@ -116,7 +116,7 @@ impl GpuQueries {
         if self.open.asked.is_empty() {
             return Ok(());
         }
-        if !self.frame.as_ref().is_some_and(|frame| frame.is_late) {
+        if !self.is_late() {
             self.open_first()?;
         }
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
@@ -184,8 +184,8 @@ impl GpuQueries {
     /// Submits what was recorded since the last time.
     pub(super) fn submit(&mut self) -> Result<(), Error> {
         let frame = self.frame.as_mut().ok_or_else(not_begun)?;
-        let drawn = frame.encoder.take();
-        self.submit_recorded(drawn, None)
+        let (drawn, late) = (frame.encoder.take(), frame.late.take());
+        self.submit_recorded(drawn, late)
     }
 
     /// Submits what was drawn, and late questions.

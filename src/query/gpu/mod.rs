@@ -179,8 +179,8 @@ pub struct GpuStats {
 
 /// The GPU backend: it draws into the app's attachments and asks about what is there.
 ///
-/// Draws of one wave are submitted together. So what `Queue::write_buffer` writes during a draw
-/// is there for all draws of the wave: data that differs between calls of the closure needs a
+/// Draws of one wave are submitted together; those of the whole frame, if questions are late. So what `Queue::write_buffer` writes during a draw
+/// is there for all of these draws: data that differs between calls of the closure needs a
 /// place for each.
 #[derive(Debug)]
 pub struct GpuQueries {
@@ -287,6 +287,11 @@ impl GpuQueries {
         self.forget();
     }
 
+    /// Whether the frame's questions see an earlier depth.
+    fn is_late(&self) -> bool {
+        self.frame.as_ref().is_some_and(|frame| frame.is_late)
+    }
+
     /// Forgets the last frame.
     fn restart(&mut self) {
         self.forget();
@@ -321,13 +326,19 @@ impl QueryBackend for GpuQueries {
     }
 
     fn begin_late(&mut self, view: &View, frames: u32) -> Result<Option<View>, Error> {
+        if self.frame.is_some() {
+            // It never ended, and left no depth: who counts frames would miss it.
+            self.kept.clear();
+        }
         self.restart();
-        self.begin_frame(view, frames as usize)
+        self.begin_frame(view, frames as usize).inspect_err(|_| self.kept.clear())
     }
 
     fn draw(&mut self, record: impl FnOnce(&mut RenderPass<'static>)) -> Result<(), Error> {
-        // What was asked before must not see what is drawn now.
-        self.record_questions()?;
+        // What was asked before must not see what is drawn now. Late questions cannot.
+        if !self.is_late() {
+            self.record_questions()?;
+        }
         record(&mut self.open_pass()?);
         Ok(())
     }
@@ -364,12 +375,17 @@ impl QueryBackend for GpuQueries {
         let times = self.clock.as_ref().and_then(Clock::times);
         times.map_or(DrawTime::Unknown, |Times { draw, awaited_draw, .. }| DrawTime::Device {
             total: draw,
-            awaited: awaited_draw,
+            // Late questions wait for what the last frame drew, and for nothing else.
+            awaited: if self.is_late() { draw } else { awaited_draw },
         })
     }
 
     fn end(&mut self) -> Result<(), Error> {
         let result = self.finish_frame();
+        if result.is_err() {
+            // Nobody knows what the copy holds.
+            self.kept.clear();
+        }
         self.forget();
         self.frame = None;
         result
