@@ -73,8 +73,16 @@ impl Eye {
     fn visits(&self, scene: &Scene, view: &View) -> usize {
         let (frustum, tradeoff) = (Frustum::new(view), Tradeoff::EXACT);
         let (tree, costs) = (scene.tree(), self.culler.costs());
-        let cx =
-            Context { scene, tree, view, frustum: &frustum, frame: self.frames, tradeoff: &tradeoff, costs };
+        let cx = Context {
+            scene,
+            tree,
+            view,
+            frustum: &frustum,
+            frame: self.frames,
+            tradeoff: &tradeoff,
+            costs,
+            past: None,
+        };
         let is_seen = |fate| !matches!(fate, Fate::Unknown | Fate::Outside | Fate::NotReached);
         tree.nodes().filter(|node| is_seen(self.culler.policy().fate(&cx, node.id))).count()
     }
