@@ -78,7 +78,8 @@ fn alter(chunks: &mut Vec<Vec<u8>>, u: &mut Unstructured<'_>) {
 
 /// A file of chunks, with sound lengths and checksums.
 fn file(chunks: &[Vec<u8>], frames: u32) -> Vec<u8> {
-    let mut file = b"tercet\r\n\x01\0\0\0".to_vec();
+    // Of the present version.
+    let mut file = b"tercet\r\n\x02\0\0\0".to_vec();
     for chunk in chunks {
         let length = (chunk.len() as u32).to_le_bytes();
         let mut hasher = crc32fast::Hasher::new();
