@@ -12,9 +12,10 @@
 use std::path::Path;
 
 use glam::Vec3;
+use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Data;
 use gltf::json::{Value, deserialize};
-use gltf::mesh::Mode;
+use gltf::mesh::{Mode, Semantic};
 
 use super::compact::compact;
 use super::mesh::{Level, Mesh};
@@ -96,6 +97,20 @@ fn read_level(mesh: &gltf::Mesh<'_>, error: f32, buffers: &[Data]) -> Result<Lev
         let bad = |why: &str| format!("mesh {}, primitive {}: {why}", mesh.index(), primitive.index());
         if primitive.mode() != Mode::Triangles {
             return Err(bad("is not a list of triangles"));
+        }
+        // gltf's readers take for granted what the bytes are.
+        let positions_fit = |accessor: gltf::Accessor<'_>| {
+            (accessor.data_type(), accessor.dimensions()) == (DataType::F32, Dimensions::Vec3)
+        };
+        if !primitive.get(&Semantic::Positions).is_some_and(positions_fit) {
+            return Err(bad("has no positions of three floats"));
+        }
+        let indices_fit = |accessor: gltf::Accessor<'_>| {
+            let whole = [DataType::U8, DataType::U16, DataType::U32].contains(&accessor.data_type());
+            whole && accessor.dimensions() == Dimensions::Scalar
+        };
+        if !primitive.indices().is_none_or(indices_fit) {
+            return Err(bad("has indices that are no whole numbers"));
         }
         let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(|data| &data.0[..]));
         let first = positions.len() as u32;
@@ -185,6 +200,10 @@ mod tests {
                 "mesh 0, primitive 0",
             ),
             ("index", "AAECAA==", "AAEJAA==", "index 2"),
+            ("short-positions", "5126", "5123", "no positions of three floats"),
+            ("flat-positions", r#""VEC3""#, r#""VEC2""#, "no positions of three floats"),
+            ("float-indices", "5121", "5126", "no whole numbers"),
+            ("index-pairs", r#""SCALAR""#, r#""VEC2""#, "no whole numbers"),
         ] {
             let message = message(name, from, to);
             assert!(message.contains(expected), "{name}: {message}");
