@@ -38,7 +38,7 @@ use trusting::Trusting;
 #[test]
 fn random_worlds() {
     for &name in policy::NAMES {
-        let seeds: Vec<u64> = (0..64).collect();
+        let seeds: Vec<u64> = (0..48).collect();
         let outcomes = seeds.par_iter().map(|&seed| {
             let outcome = outcome(name, worlds::random(seed, 120), seed);
             assert_eq!(outcome.lost, 0, "{name} lost an object in random world {seed}");
@@ -51,7 +51,7 @@ fn random_worlds() {
             all
         };
         let all = sum(&mut seeds.iter());
-        assert!(all.hidden > 10_000 && all.visible > 5_000, "the worlds have things to hide: {all:?}");
+        assert!(all.hidden > 7_500 && all.visible > 3_750, "the worlds have things to hide: {all:?}");
         if culls_hidden(name) {
             assert!(all.culled > 0, "{name} culled nothing that was hidden: {all:?}");
             assert_culls_most(name, sum(&mut seeds.iter().filter(|&&seed| is_default(seed))));

@@ -37,6 +37,7 @@ pub fn load_mesh(path: impl AsRef<Path>) -> Result<Mesh, Error> {
 fn read_mesh(path: &Path) -> Result<Mesh, String> {
     // Images are not asked for, and so neither found missing nor decoded.
     let bytes = std::fs::read(path).map_err(|e| e.to_string())?;
+    check_header(&bytes)?;
     let unchecked = gltf::Gltf::from_slice_without_validation(&bytes).map_err(|e| e.to_string())?;
     check_accessors(unchecked.document.as_json())?;
     let file = gltf::Gltf::from_slice(&bytes).map_err(|e| e.to_string())?;
@@ -59,6 +60,18 @@ fn read_mesh(path: &Path) -> Result<Mesh, String> {
     }
     let name = finest.name().map_or_else(|| format!("mesh {}", finest.index()), str::to_owned);
     Mesh::with_levels(name, levels).map_err(|e| e.to_string())
+}
+
+/// Whether a binary file says that it is as long as its header, at least: gltf subtracts the one from the other.
+fn check_header(bytes: &[u8]) -> Result<(), String> {
+    const HEADER: usize = 12;
+    match bytes.get(8..HEADER) {
+        Some(&[a, b, c, d]) if bytes.starts_with(b"glTF") => {
+            let length = u32::from_le_bytes([a, b, c, d]) as usize;
+            if length >= HEADER { Ok(()) } else { Err(format!("its header says that it has {length} bytes")) }
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Whether every primitive's attributes exist: gltf's own validation panics where they do not.
@@ -174,6 +187,13 @@ mod tests {
         assert_eq!(mesh.levels().iter().map(|l| l.error).collect::<Vec<_>>(), [0.0, 0.25]);
         assert_eq!(mesh.levels()[0].positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
         assert_eq!(mesh.levels()[1].indices, [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_binary_file_shorter_than_its_header_is_refused() {
+        let short = b"glTF\x02\0\0\0\x0b\0\0\0";
+        assert!(check_header(short).is_err_and(|why| why.contains("11 bytes")));
+        assert!(check_header(b"glTF\x02\0\0\0\x0c\0\0\0").is_ok() && check_header(b"{}").is_ok());
     }
 
     #[test]
