@@ -141,14 +141,14 @@ impl<P: Policy> Culler<P> {
         self.open.clear();
         self.drawn.begin(scene, self.frame);
         self.drawn.owned = self.policy.asks_owners();
-        let tradeoff = self.tradeoff.at_resolution(self.divisor);
-        self.applied = tradeoff;
+        self.applied = self.tradeoff.at_resolution(self.divisor);
+        let tradeoff = &self.applied;
         // What was seen from elsewhere, or of another scene, says nothing of this frame.
         let late = if is_cut || is_other { 0 } else { tradeoff.latency.frames() };
         self.past = match late {
             0 => queries.begin(view).map(|()| None)?,
             _ => queries.begin_late(view, late)?.map(|past| {
-                let then = self.frame.wrapping_sub(late) as usize % self.updates.len();
+                let then = self.frame.wrapping_sub(late) as usize % KEPT_UPDATES;
                 let updates = scene.tree().tick().wrapping_sub(self.updates[then]);
                 Past::new(past, view, tradeoff.swept.then_some(updates))
             }),
@@ -157,7 +157,7 @@ impl<P: Policy> Culler<P> {
         let mut purse = Purse::new(tradeoff.budget, start);
         let (frame, costs) = (self.frame, self.costs);
         let (tree, past) = (scene.tree(), self.past.as_ref());
-        let cx = Context { scene, tree, view, frustum: &frustum, frame, tradeoff: &tradeoff, costs, past };
+        let cx = Context { scene, tree, view, frustum: &frustum, frame, tradeoff, costs, past };
         let mut stats = FrameStats { cuts: is_cut.into(), ..FrameStats::default() };
         // What asking reports. Nothing more is asked then, and all that is open is unknown.
         let mut failure = None;
