@@ -55,18 +55,8 @@ impl Rig {
         let target = if back { Vec3::Z } else { Vec3::NEG_Z };
         let view = View::look_at(Vec3::ZERO, target, 60.0, 0.1, Viewport::new(640, 360)).expect("a view");
         let frustum = Frustum::new(&view);
-        let (scene, tree, frame, costs) = (&self.scene, self.scene.tree(), self.frame, self.costs);
-        let tradeoff = Tradeoff::EXACT;
-        let cx = Context {
-            scene,
-            tree,
-            view: &view,
-            frustum: &frustum,
-            frame,
-            tradeoff: &tradeoff,
-            costs,
-            past: None,
-        };
+        let tree = self.scene.tree();
+        let cx = context(&self.scene, &view, &frustum, self.frame, self.costs);
         let (mut drawn, mut questions, mut open, mut actions) = (0, 0, Vec::new(), Vec::new());
         policy.begin(&cx);
         loop {
@@ -233,6 +223,17 @@ fn counters_are_those_of_the_frame() {
     assert!(keys[0].ends_with(&["gated_frames", "probes"]));
 }
 
+/// What a policy may look at in a frame of the rig.
+fn context<'a>(
+    scene: &'a Scene,
+    view: &'a View,
+    frustum: &'a Frustum,
+    frame: u32,
+    costs: Costs,
+) -> Context<'a> {
+    Context { scene, tree: scene.tree(), view, frustum, frame, tradeoff: &Tradeoff::EXACT, costs, past: None }
+}
+
 /// An answer that is lost counts as visible.
 #[test]
 fn lost_answers_do_not_open_the_gate() {
@@ -240,18 +241,7 @@ fn lost_answers_do_not_open_the_gate() {
     let view = View::look_at(Vec3::ZERO, Vec3::Z, 60.0, 0.1, Viewport::new(640, 360)).expect("a view");
     let frustum = Frustum::new(&view);
     for frame in 1..100 {
-        let (scene, costs, tradeoff) = (&rig.scene, rig.costs, Tradeoff::EXACT);
-        let tree = scene.tree();
-        let cx = Context {
-            scene,
-            tree,
-            view: &view,
-            frustum: &frustum,
-            frame,
-            tradeoff: &tradeoff,
-            costs,
-            past: None,
-        };
+        let cx = context(&rig.scene, &view, &frustum, frame, rig.costs);
         policy.begin(&cx);
         let mut asked: u32 = 0;
         loop {
