@@ -24,6 +24,8 @@ pub struct FrameCost {
     pub draw: f32,
     /// Objects drawn.
     pub drawn: u32,
+    /// Whether a device drew: its part of the time is then that of a frame some frames ago.
+    pub is_late: bool,
 }
 
 /// How much a new frame counts.
@@ -60,13 +62,13 @@ impl Costs {
     }
 
     /// Takes the times of the last frame as they are.
-    pub(crate) fn record(&mut self, stats: &FrameStats) {
+    pub(crate) fn record(&mut self, stats: &FrameStats, is_late: bool) {
         // Answers waited for a part of the device's drawing, which then is in the waiting already.
         let after = stats.device_draw.saturating_sub(stats.awaited_draw);
         let total = stats.policy + stats.query + stats.wait + stats.draw + after;
         let draw = stats.draw + stats.device_draw;
-        let last = FrameCost { total: total.as_secs_f32(), draw: draw.as_secs_f32(), drawn: stats.drawn };
-        self.last = Some(last);
+        let [total, draw] = [total, draw].map(|time| time.as_secs_f32());
+        self.last = Some(FrameCost { total, draw, drawn: stats.drawn, is_late });
     }
 
     /// The same costs, without the last frame: nobody knows what it took, or it was not the asker's.
@@ -137,9 +139,12 @@ mod tests {
         let [device_draw, awaited_draw] = [700, 500].map(Duration::from_micros);
         let mut costs = Costs::default();
         assert_eq!(costs.last_frame(), None);
-        costs.record(&FrameStats { device_draw, awaited_draw, ..frame(600, 10, 100, 20) });
-        let FrameCost { total, draw, drawn } = costs.last_frame().expect("it was recorded");
-        assert!((total - 900e-6).abs() < 1e-8 && (draw - 800e-6).abs() < 1e-8 && drawn == 20, "{costs:?}");
+        costs.record(&FrameStats { device_draw, awaited_draw, ..frame(600, 10, 100, 20) }, true);
+        let FrameCost { total, draw, drawn, is_late } = costs.last_frame().expect("it was recorded");
+        assert!(
+            (total - 900e-6).abs() < 1e-8 && (draw - 800e-6).abs() < 1e-8 && drawn == 20 && is_late,
+            "{costs:?}"
+        );
         assert_eq!(costs.question(), Costs::default().question());
         assert_eq!(costs.without_last(), Costs::default());
     }

@@ -239,7 +239,7 @@ impl<P: Policy> Culler<P> {
         if draw_time == DrawTime::Unknown {
             self.costs = self.costs.without_last();
         } else {
-            self.costs.record(&stats);
+            self.costs.record(&stats, draw_time != DrawTime::AtOnce);
             if self.votes.asks {
                 self.costs.learn(&stats);
             }

@@ -27,7 +27,7 @@ fn names() -> impl Iterator<Item = &'static str> {
 fn policy(name: &str) -> Box<dyn Policy> {
     let mut policy = policy::by_name(name).expect("a policy of that name");
     match name {
-        "auto" => policy.set("gate", "off").expect("its switch"),
+        "auto" => policy.set("race", "false").expect("its switch"),
         "nohc" => policy.set("caution", "0").expect("its dial"),
         _ => {}
     }
@@ -225,18 +225,13 @@ impl Price {
 
     /// What a first frame costs, at most.
     ///
-    /// Two policies keep what they have learned of worlds in general. CHC++ may put its nodes into other
-    /// multiqueries, in each of which a node is asked about at most thrice. `auto` may have found another
-    /// way better than that it begins with.
+    /// CHC++ keeps what it has learned of worlds in general: it may put its nodes into other multiqueries, in
+    /// each of which a node is asked about at most thrice.
     fn of_first(name: &'static str, scene: &Scene, world: &World, view: &View) -> Self {
-        let first = |name| Self::of(&mut Eye::new(policy(name)), scene, world, view);
+        let first = Self::of(&mut Eye::new(policy(name)), scene, world, view);
         match name {
-            "chc++" => {
-                let first = first(name);
-                Self { questions: first.nodes as u32, boxes: 3 * first.boxes, ..first }
-            }
-            "auto" => names().map(first).reduce(Self::max).expect("some policies"),
-            _ => first(name),
+            "chc++" => Self { questions: first.nodes as u32, boxes: 3 * first.boxes, ..first },
+            _ => first,
         }
     }
 
@@ -246,16 +241,6 @@ impl Price {
             && self.boxes <= most.boxes
             && self.waves <= most.waves
             && self.drawn <= most.drawn
-    }
-
-    fn max(self, other: Self) -> Self {
-        Self {
-            nodes: self.nodes.max(other.nodes),
-            questions: self.questions.max(other.questions),
-            boxes: self.boxes.max(other.boxes),
-            waves: self.waves.max(other.waves),
-            drawn: self.drawn.max(other.drawn),
-        }
     }
 }
 

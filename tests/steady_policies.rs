@@ -46,7 +46,7 @@ fn check(name: &str, dials: &[(&str, &str)]) {
     worlds::random(5, OBJECTS).spawn(&mut world);
     let mut policy = policy::by_name(name).expect("a policy of that name");
     // Which way is the best, and how many objects a leaf should have, is a matter of times.
-    let own: &[_] = if name == "auto" { &[("race", "false"), ("gate", "off")] } else { &[] };
+    let own: &[_] = if name == "auto" { &[("race", "false")] } else { &[] };
     for (key, value) in own.iter().chain(dials) {
         policy.set(key, value).expect("its dial");
     }

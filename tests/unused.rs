@@ -33,7 +33,7 @@ fn view() -> View {
 fn policy(name: &str) -> Box<dyn Policy> {
     let mut policy = policy::by_name(name).expect("a policy of that name");
     let repeatable = match name {
-        "auto" => policy.set("race", "false").and(policy.set("gate", "off")),
+        "auto" => policy.set("race", "false"),
         "nohc" => policy.set("caution", "0"),
         "dual-query" => policy.set("n_skip", "0"),
         _ => Ok(()),

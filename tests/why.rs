@@ -157,7 +157,7 @@ impl<P: Policy> Watch<P> {
             (Why::Remembered { within, .. }, Some(_)) => within != Some(0),
             (Why::Unasked, _) => matches!(self.eye.policy().name(), "none" | "frustum"),
             (Why::Swept { .. }, _) => {
-                matches!(self.eye.policy().name(), "roc" | "hroc" | "hi-z" | "hybrid")
+                matches!(self.eye.policy().name(), "roc" | "hroc" | "hi-z" | "hybrid" | "auto")
             }
             (Why::Given { .. }, _) => matches!(self.eye.policy().name(), "opt" | "exact"),
             _ => false,
@@ -181,9 +181,7 @@ fn policies() -> Vec<Box<dyn Policy>> {
         match name {
             "chc++" => policy.set("tight", "false").expect("its switch"),
             // What it does is not left to this machine's times.
-            "auto" => [("gate", "off"), ("race", "false")]
-                .into_iter()
-                .for_each(|(key, value)| policy.set(key, value).expect("its switch")),
+            "auto" => policy.set("race", "false").expect("its switch"),
             _ => {}
         }
         all.push(policy);

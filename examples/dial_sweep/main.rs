@@ -46,6 +46,7 @@ const PROGRAM: Program = Program {
         ("--scale 0.2 --objects 300 --frames 20", "a look in a minute"),
     ],
     frames: "60",
+    policy: "dual-query",
     full_detail: false,
     gate: false,
     policies: &[],

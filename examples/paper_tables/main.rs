@@ -70,6 +70,7 @@ const PROGRAM: Program = Program {
         ("--table kt2005 --set n_skip=4", "a dial of the new algorithm; those of the tree are for both"),
     ],
     frames: "120",
+    policy: "dual-query",
     full_detail: true,
     gate: false,
     policies: &["hierarchy-a", "hierarchy-b", "hierarchy-c", "hierarchy-d", "chc", "chc++", "nohc"],

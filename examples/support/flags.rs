@@ -15,14 +15,11 @@ use tercet::{Culler, PRESETS, Tradeoff};
 
 use super::program::Program;
 
-/// What culls, unless the command line says otherwise.
-const DEFAULT_POLICY: &str = "dual-query";
-
 /// What the command line says.
 #[derive(Clone, Debug, Parser)]
 pub struct Flags {
     /// The culling algorithm; see the list below
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_POLICY)]
+    #[arg(long, value_name = "NAME", default_value = "auto")]
     pub policy: String,
 
     /// Set dials of the policy, the tree or the example by name; see the lists below
@@ -281,14 +278,14 @@ const FLIGHT_END: &str = "flight_end";
 /// A policy with its default dials.
 fn by_name(name: &str, gate: bool) -> anyhow::Result<Box<dyn Policy>> {
     let policy = policy::by_name(name)?;
-    // This one brings a gate of its own.
-    let has_one = policy.name() == "auto";
-    Ok(if gate && !has_one { Box::new(Gated::new(policy)) } else { policy })
+    // This one weighs by itself whether to ask.
+    let weighs = policy.name() == "auto";
+    Ok(if gate && !weighs { Box::new(Gated::new(policy)) } else { policy })
 }
 
 /// The dials that a gate adds to those of a policy.
 fn gate_dials() -> Vec<tercet::Dial> {
-    let dials = |gate| by_name(DEFAULT_POLICY, gate).map(|policy| policy.dials()).unwrap_or_default();
+    let dials = |gate| by_name("dual-query", gate).map(|policy| policy.dials()).unwrap_or_default();
     let own = dials(false);
     dials(true).into_iter().filter(|dial| !has(&own, dial.key)).collect()
 }
@@ -323,7 +320,7 @@ fn catalogue(program: &Program) -> String {
         let _ = writeln!(text, "\nPolicies: {}", policy::NAMES.join(", "));
         policy::NAMES.to_vec()
     } else {
-        [&[DEFAULT_POLICY], program.policies].concat()
+        [&[program.policy], program.policies].concat()
     };
     for name in names {
         let dials = by_name(name, false).map(|policy| policy.dials()).unwrap_or_default();

@@ -15,6 +15,8 @@ pub struct Program {
     pub examples: &'static [(&'static str, &'static str)],
     /// How many frames are run, unless the command line says otherwise.
     pub frames: &'static str,
+    /// Which policy runs, unless the command line says otherwise.
+    pub policy: &'static str,
     /// Whether meshes are drawn with all their triangles, unless the command line says otherwise.
     pub full_detail: bool,
     /// Whether the policy is behind a gate ([`Gated`](tercet::policy::Gated)): a demo shall never be
@@ -33,16 +35,26 @@ impl Program {
             ("", "a window to fly about in; the next line's run where there is no display"),
             ("--headless", "the whole flight, with its figures and pictures"),
             ("--frames 60 --oracle", "check each frame against the exact visible set"),
-            ("--audit 24 --set visible_pixels=16", "lossy: what is lost in every 24th frame, and why"),
+            (
+                "--policy dual-query --audit 24 --set visible_pixels=16",
+                "lossy: what is lost in every 24th frame, and why",
+            ),
             ("--headless --policy frustum", "what the view frustum alone would leave to draw"),
-            ("--headless --set gate=off", "ask in every frame, even where it does not pay"),
-            ("--set preset=paper", "the tree with the rule and the constants of the 2005 paper"),
+            (
+                "--headless --policy dual-query --set gate=off",
+                "ask in every frame, even where it does not pay",
+            ),
+            (
+                "--policy dual-query --set preset=paper",
+                "the algorithm, the rule and the constants of the 2005 paper",
+            ),
         ];
         Self {
             name,
             about,
             examples: EXAMPLES,
             frames: "240",
+            policy: "auto",
             full_detail: false,
             gate: true,
             policies: &[],
@@ -59,6 +71,7 @@ impl Program {
     pub(super) fn adapt(&self, command: Command) -> Command {
         let mut command = command.name(self.name).about(self.about);
         command = command.mut_arg("frames", |arg| arg.default_value(self.frames));
+        command = command.mut_arg("policy", |arg| arg.default_value(self.policy));
         command = command.mut_arg("full_detail", |arg| arg.hide(self.full_detail));
         for (flag, _) in self.refused {
             command = command.mut_arg(flag, |arg| arg.hide(true));

@@ -87,6 +87,7 @@ const PROGRAM: Program = Program {
         ("--scale 0.2 --objects 300 --frames 20 --size 640x360", "a look in a minute"),
     ],
     frames: "60",
+    policy: "dual-query",
     full_detail: false,
     gate: false,
     policies: &[],

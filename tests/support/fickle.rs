@@ -11,7 +11,7 @@ pub struct Fickle<P>(pub P);
 fn told<'a>(cx: &Context<'a>) -> Context<'a> {
     let objects = 1 + cx.frame * 7 % 50;
     let seconds = if (cx.frame / 12).is_multiple_of(2) { 1e-3 } else { 1.0 };
-    let last = FrameCost { total: seconds * objects as f32, draw: 1e-3, drawn: objects };
+    let last = FrameCost { total: seconds * objects as f32, draw: 1e-3, drawn: objects, is_late: false };
     Context { costs: cx.costs.after(last), ..*cx }
 }
 

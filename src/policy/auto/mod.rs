@@ -1,12 +1,13 @@
 //! The policy that picks a policy: whichever is fastest in this scene, on this machine, now.
 //!
-//! It begins with dual queries behind a gate ([`Gated`]): nothing but the frustum, until a probe finds
-//! that enough is hidden. From then on other ways of culling race against it, a few frames at a time
-//! ([`race`]), and the fastest is kept. Who races depends on what the scene shows ([`signs`]): where
-//! things move, movers are swept apart (*hybrid*), where nothing does, all goes by groups (*hroc*).
+//! It begins with groups and rays ([`Hroc`]), which need no frame to learn and leave the tree as coarse as
+//! it is. Other ways of culling race against it, a few frames at a time ([`race`]), and the fastest is
+//! kept: the frustum alone, if too little is hidden for asking to pay; on a device dual queries, CHC++ or
+//! a pyramid, if they wait for less. Who races depends on what the scene shows ([`signs`]): where things move, policies that test
+//! each mover apart (*hybrid*, *roc*) come in.
 //!
 //! Times arrive recorded, as [`Costs::last_frame`](crate::Costs::last_frame): the same times and answers,
-//! the same choices. On a device that does not say how long it draws, dual queries stay.
+//! the same choices. On a device that does not say how long it draws, groups and rays stay.
 //!
 //! Conservative whenever its ways are: a frame is one way's alone, and none of them trusts what it saw
 //! when it was last in use.
@@ -20,7 +21,8 @@ mod signs;
 use std::fmt::Write;
 
 use super::{
-    Action, Answer, ChcPlusPlus, Context, DualQuery, Fate, Gated, HiZ, Hroc, Hybrid, Policy, Ticket,
+    Action, Answer, ChcPlusPlus, Context, DualQuery, Fate, FrustumOnly, HiZ, Hroc, Hybrid, Policy, Roc,
+    Ticket,
 };
 use crate::dial::{self, Dial};
 use crate::tree::{NodeId, Votes};
@@ -28,10 +30,10 @@ use crate::{Counter, Error};
 use race::Race;
 use signs::Signs;
 
-/// Picks among dual queries, CHC++ and raster culling; see the module's documentation.
+/// Picks among the other policies; see the module's documentation.
 #[derive(Clone, Debug)]
 pub struct Auto {
-    /// Whether others may take the place of dual queries.
+    /// Whether others may take the place of the way that it begins with.
     pub race: bool,
     ways: Ways,
     running: usize,
@@ -42,43 +44,46 @@ pub struct Auto {
     drawn: u32,
 }
 
-/// The ways, by number; the first is where a race begins.
+/// The ways, by number; the first is where a race begins, and then they challenge in this order.
 #[derive(Clone, Debug, Default)]
 struct Ways {
-    dual_query: Gate,
     hroc: Hroc,
+    frustum: FrustumOnly,
     hybrid: Hybrid,
+    roc: Roc,
+    dual_query: DualQuery,
     chc_plus_plus: ChcPlusPlus,
     hi_z: HiZ,
 }
 
-/// Dual queries, and the frustum alone where they do not pay.
-#[derive(Clone, Debug)]
-struct Gate(Gated<DualQuery>);
-
-impl Default for Gate {
-    fn default() -> Self {
-        Self(Gated::new(DualQuery::default()))
-    }
-}
-
-const DUAL_QUERY: usize = 0;
-const HROC: usize = 1;
+const HROC: usize = 0;
+const FRUSTUM: usize = 1;
 const HYBRID: usize = 2;
-const CHC_PLUS_PLUS: usize = 3;
+const ROC: usize = 3;
+const DUAL_QUERY: usize = 4;
+const CHC_PLUS_PLUS: usize = 5;
+const HI_Z: usize = 6;
 /// By number: what counters call a way, which says how many frames were its.
-const KEYS: [&str; 5] = ["auto_dual_query", "auto_hroc", "auto_hybrid", "auto_chc_plus_plus", "auto_hi_z"];
-/// The dials of the gate, which are this policy's as well.
-const GATE: [&str; 2] = ["gate", "probe"];
-/// The share of the objects that move from which movers are swept apart.
+const KEYS: [&str; 7] = [
+    "auto_hroc",
+    "auto_frustum",
+    "auto_hybrid",
+    "auto_roc",
+    "auto_dual_query",
+    "auto_chc_plus_plus",
+    "auto_hi_z",
+];
+/// The share of the objects that move from which movers are tested apart.
 const MOVERS: f32 = 0.01;
 
 impl Ways {
     fn get(&self, way: usize) -> &dyn Policy {
         match way {
-            DUAL_QUERY => &self.dual_query.0,
             HROC => &self.hroc,
+            FRUSTUM => &self.frustum,
             HYBRID => &self.hybrid,
+            ROC => &self.roc,
+            DUAL_QUERY => &self.dual_query,
             CHC_PLUS_PLUS => &self.chc_plus_plus,
             _ => &self.hi_z,
         }
@@ -86,11 +91,43 @@ impl Ways {
 
     fn get_mut(&mut self, way: usize) -> &mut dyn Policy {
         match way {
-            DUAL_QUERY => &mut self.dual_query.0,
             HROC => &mut self.hroc,
+            FRUSTUM => &mut self.frustum,
             HYBRID => &mut self.hybrid,
+            ROC => &mut self.roc,
+            DUAL_QUERY => &mut self.dual_query,
             CHC_PLUS_PLUS => &mut self.chc_plus_plus,
             _ => &mut self.hi_z,
+        }
+    }
+}
+
+/// Who may challenge, and how long each learns.
+struct Field {
+    /// Whether objects move.
+    moves: bool,
+    /// Whether a device draws and answers.
+    device: bool,
+}
+
+impl race::Ways for Field {
+    fn admits(&self, way: usize) -> bool {
+        match way {
+            HYBRID | ROC => self.moves,
+            // Where the CPU answers, nothing that asks node by node, or by a pyramid, was ever faster than
+            // rays, and to find that out took longer than it could save.
+            DUAL_QUERY | CHC_PLUS_PLUS | HI_Z => self.device,
+            _ => true,
+        }
+    }
+
+    /// Whoever asks about nodes must see them before it can cull, and the tree must become finer for it;
+    /// what sweeps draw first is what was drawn last, whoever drew it.
+    fn learns(&self, way: usize) -> [u32; 2] {
+        match way {
+            FRUSTUM => [0, 0],
+            DUAL_QUERY | CHC_PLUS_PLUS => [3, 1],
+            _ => [1, 0],
         }
     }
 }
@@ -100,7 +137,7 @@ impl Default for Auto {
         Self {
             race: true,
             ways: Ways::default(),
-            running: DUAL_QUERY,
+            running: HROC,
             contest: Race::new(KEYS.len()),
             signs: Signs::default(),
             objects: 0,
@@ -117,19 +154,6 @@ impl Auto {
 
     fn running(&self) -> &dyn Policy {
         self.ways.get(self.running)
-    }
-
-    /// Who may challenge: who fits what moves, if there is anything to gain.
-    fn admits(&self, way: usize) -> bool {
-        // While the gate is on trial, nobody disturbs it.
-        let is_open = self.ways.dual_query.0.has_opened();
-        let moves = self.signs.moving >= MOVERS;
-        (is_open || self.contest.champion() != DUAL_QUERY)
-            && match way {
-                HROC => !moves,
-                HYBRID => moves,
-                _ => true,
-            }
     }
 }
 
@@ -157,8 +181,9 @@ impl Policy for Auto {
         self.drawn = last.map_or(self.drawn, |last| last.drawn);
         let before = self.running;
         if self.race {
-            let admitted: [bool; KEYS.len()] = std::array::from_fn(|way| self.admits(way));
-            self.running = self.contest.next(last.map(|last| last.total), |way| admitted[way]);
+            let is_late = last.is_some_and(|last| last.is_late);
+            let field = Field { moves: self.signs.moving >= MOVERS, device: is_late };
+            self.running = self.contest.next(last.map(|last| last.total), is_late, &field);
         }
         // A way must not take another's frame for its own.
         let costs = if before == self.running { cx.costs } else { cx.costs.without_last() };
@@ -175,7 +200,7 @@ impl Policy for Auto {
 
     fn reset(&mut self) {
         (0..KEYS.len()).for_each(|way| self.ways.get_mut(way).reset());
-        self.running = DUAL_QUERY;
+        self.running = HROC;
         self.contest = Race::new(KEYS.len());
         self.signs = Signs::default();
     }
@@ -206,11 +231,13 @@ impl Policy for Auto {
             .filter_map(|way| Some((self.ways.get(way).name(), self.contest.records()[way].ratio?)))
             .map(|(name, ratio)| format!("{name} took {ratio:.2} × its time"))
             .collect();
-        let _ = match (others.is_empty(), self.ways.dual_query.0.asks()) {
-            (false, _) => write!(text, "{}", others.join(", ")),
-            (true, true) => write!(text, "no other has been tried yet"),
-            (true, false) => write!(text, "too little is hidden for asking to pay, so the frustum is drawn"),
-        };
+        if others.is_empty() {
+            text += "no other has been tried yet";
+        }
+        text += &others.join(", ");
+        if champion == FRUSTUM {
+            text += "; too little is hidden for asking to pay";
+        }
         let in_view = self.signs.in_view * self.objects as f32;
         let hidden = (1.0 - self.drawn as f32 / in_view.max(1.0)).clamp(0.0, 1.0);
         let percent = |share: f32| (100.0 * share).round();
@@ -224,14 +251,7 @@ impl Policy for Auto {
     }
 
     fn dials(&self) -> Vec<Dial> {
-        let mut dials = vec![Dial::new(
-            "race",
-            self.race,
-            "let other ways than dual queries show whether they are faster",
-        )];
-        let gate = self.ways.dual_query.0.dials();
-        dials.extend(gate.into_iter().filter(|dial| GATE.contains(&dial.key)));
-        dials
+        vec![Dial::new("race", self.race, "let other ways than groups and rays show whether they are faster")]
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
@@ -239,10 +259,9 @@ impl Policy for Auto {
             "race" => {
                 self.race = dial::number(key, value, false..=true)?;
                 if !self.race {
-                    self.running = DUAL_QUERY;
+                    self.running = HROC;
                 }
             }
-            key if GATE.contains(&key) => self.ways.dual_query.0.set(key, value)?,
             _ => return Err(dial::unknown(key, value, &self.dials())),
         }
         Ok(())

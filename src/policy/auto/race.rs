@@ -1,30 +1,45 @@
 //! Which way is fastest: duels between the one in use and the others, by the times that frames took.
 //!
 //! ```text
-//!            the next challenger's turn       it ran 6 frames         the champion ran 4 more
-//!  ┌────────┐ ───────────────────▶ ┌───────┐ ────────────────▶ ┌──────┐ ─────────────┐
-//!  │ steady │                      │ trial │                   │ back │  who was faster is
-//!  └────────┘                      └───────┘                   └──────┘  champion now │
-//!      ▲  ▲      it is far slower      │                                              │
-//!      │  └────────────────────────────┘                                              │
-//!      └──────────────────────────────────────────────────────────────────────────────┘
+//!            the next challenger's turn         two of three rounds are one's
+//!  ┌────────┐ ───────────────────▶ ┌───────────────────────┐ ────────────────┐
+//!  │ steady │                      │ challenger ◀▶ champion │  whose they are │
+//!  └────────┘                      └───────────────────────┘  is champion now │
+//!      ▲  it is far slower: it lost    │                                      │
+//!      └───────────────────────────────┴──────────────────────────────────────┘
 //! ```
 //!
-//! Views and worlds change while a race is on, so times are compared with those of the frames just
-//! before and just after. The first frames after a change of ways are not judged: a policy must see the
-//! scene before it can cull, and a device's times are those of frames before. A way that lost waits
-//! twice as long for its next duel, so that a race costs little where nothing changes.
+//! Views and worlds change while a race is on, so the two take turns, a frame each where that does, and a
+//! challenger's frame is compared with what lies between the champion's just before and just after it. Three rounds are
+//! fought, of which the middle one counts: two suffice if they agree. Frames in which a way learns are not
+//! judged, nor those whose time a device tells too late ([`Ways`]).
+//!
+//! What it takes to find out is bounded: a duel begins only if those before it have cost no more than
+//! [`SHARE`] of all the time so far. A way that lost waits, twice as long each time,
+//! and less if it was close.
+
+/// What a race must know of its ways.
+pub(super) trait Ways {
+    /// Whether it may challenge now.
+    fn admits(&self, way: usize) -> bool;
+
+    /// Its frames that are not judged when it is tried, and in later rounds or when it comes back.
+    fn learns(&self, way: usize) -> [u32; 2];
+}
 
 /// Ways that race against each other, by number.
 #[derive(Clone, Debug)]
 pub(super) struct Race {
     champion: usize,
-    stage: Stage,
+    duel: Option<Duel>,
     ways: Vec<Record>,
-    /// Frames that the champion has run in a row, as far as they count.
+    /// Frames that the champion has run in a row.
     settled: u32,
-    /// The champion's time lately, seconds.
-    lately: f32,
+    /// The time of its last judged frame, seconds.
+    before: f32,
+    /// Seconds of all frames, and what challengers took more than the champion would have.
+    all: f64,
+    lost: f64,
     /// Duels so far.
     pub(super) duels: u32,
 }
@@ -36,39 +51,65 @@ pub(super) struct Record {
     pub(super) ratio: Option<f32>,
     /// Frames until it may challenge.
     wait: u32,
-    /// Frames from its next defeat to its next duel.
-    patience: u32,
+    /// Frames from its next defeat to its next duel, if that is a clear one.
+    patience: f32,
 }
 
+/// A challenger's turns and the champion's.
 #[derive(Clone, Copy, Debug)]
-enum Stage {
-    Steady,
-    Trial { challenger: usize, frames: u32, sum: f32 },
-    Back { challenger: usize, frames: u32, sum: f32, trial: f32 },
+struct Duel {
+    challenger: usize,
+    /// Frames of the turn under way.
+    frames: u32,
+    turn: Turn,
+    /// The challenger's time of this round, seconds, and how many frames after the champion's.
+    time: f32,
+    after: u32,
+    ratios: [f32; ROUNDS],
+    fought: usize,
 }
 
-/// Frames of the champion that count before the first duel, and between two of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Turn {
+    Challenger,
+    Champion,
+}
+
+/// Frames of the champion before the first duel, and between two of them.
 const REST: u32 = 4;
-/// Frames of a trial, and those of them that are not judged.
-const TRIAL: u32 = 6;
-const LEARNING: u32 = 3;
-/// Frames of the champion after a trial, and those of them that are not judged.
-const BACK: u32 = 4;
-const RELEARNING: u32 = 2;
+/// Of which the middle one counts.
+const ROUNDS: usize = 3;
+/// Frames until a device tells what a frame took.
+const LATE: u32 = 3;
 /// A challenger must be so much faster: times are noisy, and a change costs some frames.
 const MARGIN: f32 = 0.95;
-/// A frame of a trial, but the first, that takes so many times the champion's ends it.
-const RUINOUS: f32 = 2.5;
-const PATIENCE: u32 = 64;
-const MOST_PATIENCE: u32 = 2048;
-/// How much a new frame counts in [`Race::lately`].
-const WEIGHT: f32 = 0.25;
+/// A judged frame that takes so many times the champion's ends a duel.
+const RUINOUS: f32 = 1.75;
+/// Of all time, what losers may take more than the champion would have, beside
+/// [`ADVANCE`] of its frames.
+const SHARE: f64 = 0.03;
+const ADVANCE: f64 = 1.5;
+/// By how much a loser's time must be the longer for it to wait out its patience.
+const FAR_SLOWER: f32 = 0.5;
+const PATIENCE: f32 = 64.0;
+const MOST_PATIENCE: f32 = 1024.0;
+/// Frames until an old champion may challenge the new one: times are noisy, and views turn.
+const REMATCH: u32 = 12;
 
 impl Race {
     /// A race of so many ways. The first is champion until another is faster.
     pub(super) fn new(ways: usize) -> Self {
         let new = Record { ratio: None, wait: 0, patience: PATIENCE };
-        Self { champion: 0, stage: Stage::Steady, ways: vec![new; ways], settled: 0, lately: 0.0, duels: 0 }
+        Self {
+            champion: 0,
+            duel: None,
+            ways: vec![new; ways],
+            settled: 0,
+            before: 0.0,
+            all: 0.0,
+            lost: 0.0,
+            duels: 0,
+        }
     }
 
     /// The way that is in use while nobody challenges it.
@@ -81,83 +122,108 @@ impl Race {
         &self.ways
     }
 
-    /// Chooses the way of the next frame, after one that took `last` seconds; None if nobody knows: then
-    /// nothing is learnt, and no duel begins. Only ways that are `admitted` challenge. Once a frame.
-    pub(super) fn next(&mut self, last: Option<f32>, admitted: impl Fn(usize) -> bool) -> usize {
+    /// Chooses the way of the next frame, after one that took `last` seconds, which a device may tell
+    /// `late`; None if nobody knows: then nothing is learnt, and no duel begins. Once a frame.
+    pub(super) fn next(&mut self, last: Option<f32>, late: bool, ways: &impl Ways) -> usize {
         self.ways.iter_mut().for_each(|way| way.wait = way.wait.saturating_sub(1));
         let Some(last) = last else { return self.running() };
-        match &mut self.stage {
-            Stage::Steady => {
-                self.lately = match self.settled {
-                    // The frames in which it learns.
-                    0..RELEARNING => last,
-                    _ => self.lately + WEIGHT * (last - self.lately),
-                };
+        self.all += f64::from(last);
+        let late = if late { LATE } else { 0 };
+        match self.duel {
+            None => {
+                self.before = last;
                 self.settled += 1;
-                if self.settled > RELEARNING + REST {
-                    self.challenge(admitted);
+                if self.settled > ways.learns(self.champion)[1] + late + REST && self.can_afford() {
+                    self.challenge(ways);
                 }
             }
-            Stage::Trial { challenger, frames, sum } => {
-                *frames += 1;
-                if *frames > LEARNING {
-                    *sum += last;
-                }
-                if *frames > 1 && last > RUINOUS * self.lately {
-                    let (challenger, ratio) = (*challenger, last / self.lately);
-                    self.defeat(challenger, ratio);
-                } else if *frames == TRIAL {
-                    let trial = *sum / (TRIAL - LEARNING) as f32;
-                    self.stage = Stage::Back { challenger: *challenger, frames: 0, sum: 0.0, trial };
-                }
-            }
-            Stage::Back { challenger, frames, sum, trial } => {
-                *frames += 1;
-                if *frames > RELEARNING {
-                    *sum += last;
-                }
-                if *frames == BACK {
-                    let after = *sum / (BACK - RELEARNING) as f32;
-                    let (challenger, ratio) = (*challenger, 2.0 * *trial / (self.lately + after));
-                    if ratio < MARGIN {
-                        self.victory(challenger, ratio)
-                    } else {
-                        self.defeat(challenger, ratio)
-                    }
-                }
-            }
+            Some(duel) => self.fight(duel, last, late, ways),
         }
         self.running()
     }
 
     fn running(&self) -> usize {
-        match self.stage {
-            Stage::Trial { challenger, .. } => challenger,
+        match self.duel {
+            Some(Duel { turn: Turn::Challenger, challenger, .. }) => challenger,
             _ => self.champion,
         }
     }
 
+    fn can_afford(&self) -> bool {
+        self.lost <= SHARE * self.all + ADVANCE * f64::from(self.before)
+    }
+
     /// Lets the first of those challenge who have waited long enough; who never has goes first.
-    fn challenge(&mut self, admitted: impl Fn(usize) -> bool) {
-        let may = |&n: &usize| n != self.champion && self.ways[n].wait == 0 && admitted(n);
+    fn challenge(&mut self, ways: &impl Ways) {
+        let may = |&n: &usize| n != self.champion && self.ways[n].wait == 0 && ways.admits(n);
         let challengers = (0..self.ways.len()).filter(may);
         if let Some(challenger) = challengers.min_by_key(|&n| (self.ways[n].ratio.is_some(), n)) {
             self.duels += 1;
-            self.stage = Stage::Trial { challenger, frames: 0, sum: 0.0 };
+            let turn = Turn::Challenger;
+            self.duel = Some(Duel {
+                challenger,
+                frames: 0,
+                turn,
+                time: 0.0,
+                after: 0,
+                ratios: [0.0; ROUNDS],
+                fought: 0,
+            });
         }
+    }
+
+    /// Takes over a frame of a duel.
+    fn fight(&mut self, mut duel: Duel, last: f32, late: u32, ways: &impl Ways) {
+        duel.frames += 1;
+        match duel.turn {
+            Turn::Challenger => {
+                self.lost += f64::from((last - self.before).max(0.0));
+                let ratio = last / self.before;
+                let learns = ways.learns(duel.challenger)[usize::from(duel.fought > 0)];
+                if duel.frames > learns + late {
+                    if ratio > RUINOUS {
+                        return self.defeat(duel.challenger, ratio);
+                    }
+                    (duel.time, duel.after) = (last, duel.frames);
+                    (duel.turn, duel.frames) = (Turn::Champion, 0);
+                }
+            }
+            Turn::Champion if duel.frames > ways.learns(self.champion)[1] + late => {
+                let share = duel.after as f32 / (duel.after + duel.frames) as f32;
+                let meanwhile = self.before + share * (last - self.before);
+                duel.ratios[duel.fought] = duel.time / meanwhile;
+                duel.fought += 1;
+                self.before = last;
+                let fought = &mut duel.ratios[..duel.fought];
+                let won = fought.iter().filter(|&&ratio| ratio < MARGIN).count();
+                if won > ROUNDS / 2 || duel.fought - won > ROUNDS / 2 {
+                    fought.sort_unstable_by(f32::total_cmp);
+                    let ratio = fought[if won > ROUNDS / 2 { won - 1 } else { won }];
+                    return self.end(duel.challenger, ratio);
+                }
+                (duel.turn, duel.frames) = (Turn::Challenger, 0);
+            }
+            Turn::Champion => {}
+        }
+        self.duel = Some(duel);
+    }
+
+    fn end(&mut self, challenger: usize, ratio: f32) {
+        if ratio < MARGIN { self.victory(challenger, ratio) } else { self.defeat(challenger, ratio) }
     }
 
     fn defeat(&mut self, challenger: usize, ratio: f32) {
         let way = &mut self.ways[challenger];
-        (way.ratio, way.wait) = (Some(ratio), way.patience);
-        way.patience = (2 * way.patience).min(MOST_PATIENCE);
+        // Who lost by little may soon be the better one.
+        let by = ((ratio - MARGIN) / FAR_SLOWER).clamp(0.125, 1.0);
+        (way.ratio, way.wait) = (Some(ratio), (way.patience * by) as u32);
+        way.patience = (way.patience * (1.0 + by)).min(MOST_PATIENCE);
         self.settle();
     }
 
     fn victory(&mut self, challenger: usize, ratio: f32) {
         let old = std::mem::replace(&mut self.champion, challenger);
-        let wait = PATIENCE;
-        self.ways[old] = Record { ratio: Some(1.0 / ratio), wait, patience: 2 * wait };
+        self.ways[old] = Record { ratio: Some(1.0 / ratio), wait: REMATCH, patience: PATIENCE };
         // The others lost against another one: their ratios are to the new champion's time now.
         for (n, way) in self.ways.iter_mut().enumerate().filter(|&(n, _)| n != old) {
             way.ratio = if n == challenger { None } else { way.ratio.map(|before| before / ratio) };
@@ -166,7 +232,7 @@ impl Race {
     }
 
     fn settle(&mut self) {
-        (self.stage, self.settled) = (Stage::Steady, 0);
+        (self.duel, self.settled) = (None, 0);
     }
 }
 
@@ -174,12 +240,27 @@ impl Race {
 mod tests {
     use super::*;
 
+    /// All but one are admitted.
+    struct But(usize);
+
+    impl Ways for But {
+        fn admits(&self, way: usize) -> bool {
+            way != self.0
+        }
+
+        fn learns(&self, way: usize) -> [u32; 2] {
+            if way.is_multiple_of(2) { [0, 0] } else { [3, 1] }
+        }
+    }
+
+    const ALL: But = But(usize::MAX);
+
     /// Runs a race in which each way takes a time a frame, and returns who ran how often.
     fn run(race: &mut Race, frames: usize, time: impl Fn(usize, usize) -> f32) -> Vec<usize> {
         let mut ran = vec![0; race.ways.len()];
         let mut last = None;
         for frame in 0..frames {
-            let way = race.next(last, |_| true);
+            let way = race.next(last, false, &ALL);
             ran[way] += 1;
             last = Some(time(way, frame));
         }
@@ -199,17 +280,48 @@ mod tests {
 
     #[test]
     fn what_grows_dearer_for_all_is_no_ones_merit() {
-        // The view wanders into a dearer place: each frame takes a twentieth more than the one before.
-        let mut race = Race::new(2);
-        run(&mut race, 100, |_, frame| 1.05f32.powi(frame as i32));
-        assert_eq!(race.champion(), 0);
+        // The view wanders into a dearer place, and out of it: a tenth a frame, and one in three differs.
+        for growth in [1.1f32, 0.91] {
+            let mut race = Race::new(2);
+            run(&mut race, 100, |_, frame| {
+                growth.powi(frame as i32) * if frame % 3 == 0 { 1.04 } else { 1.0 }
+            });
+            assert_eq!(race.champion(), 0);
+        }
     }
 
     #[test]
-    fn a_ruinous_trial_is_short() {
-        let mut race = Race::new(2);
-        let ran = run(&mut race, 60, |way, _| [1.0, 10.0][way]);
-        assert!(ran[1] <= 2, "{ran:?}");
+    fn a_ruinous_challenger_runs_once() {
+        let mut race = Race::new(3);
+        let ran = run(&mut race, 60, |way, _| [1.0, 1.0, 10.0][way]);
+        assert!(ran[2] <= 1, "{ran:?}");
+    }
+
+    #[test]
+    fn trials_take_no_more_than_their_share() {
+        let times = [1.0, 1.5, 1.6, 1.5, 1.7, 1.5];
+        for frames in [60, 600, 6000] {
+            let mut race = Race::new(times.len());
+            let ran = run(&mut race, frames, |way, _| times[way]);
+            let all: f32 = ran.iter().zip(times).map(|(&frames, time)| frames as f32 * time).sum();
+            // One duel may begin while there is still something left.
+            let most = frames as f32 * 1.03 + 1.5 + 6.0 * 0.7;
+            assert!(all < most && ran[1] > 0, "{all} of {frames}: {ran:?}");
+        }
+    }
+
+    #[test]
+    fn what_a_device_tells_late_is_not_taken_for_anothers() {
+        let times = [3.0, 2.0, 4.0];
+        let (mut race, mut ran) = (Race::new(3), vec![0; 4]);
+        for _ in 0..300 {
+            // What is told is the time of three frames ago.
+            let told = times[ran[ran.len() - 3]];
+            ran.push(race.next(Some(told), true, &ALL));
+        }
+        assert_eq!(race.champion(), 1, "{ran:?}");
+        let last = ran[ran.len() - 100..].iter().filter(|&&way| way == 1).count();
+        assert!(last > 80, "{ran:?}");
     }
 
     #[test]
@@ -220,7 +332,7 @@ mod tests {
         let mut frames = 0;
         let mut last = None;
         while race.champion() == 0 {
-            let way = race.next(last, |_| true);
+            let way = race.next(last, false, &ALL);
             last = Some([3.0, 2.0][way]);
             frames += 1;
             assert!(frames < 600, "nobody noticed");
@@ -230,7 +342,7 @@ mod tests {
     #[test]
     fn without_times_nothing_happens() {
         let mut race = Race::new(3);
-        assert!((0..100).all(|_| race.next(None, |_| true) == 0));
+        assert!((0..100).all(|_| race.next(None, false, &ALL) == 0));
         assert_eq!(race.duels, 0);
     }
 
@@ -239,7 +351,7 @@ mod tests {
         let mut race = Race::new(3);
         let mut last = None;
         for _ in 0..500 {
-            let way = race.next(last, |way| way != 1);
+            let way = race.next(last, false, &But(1));
             assert_ne!(way, 1);
             last = Some([3.0, 1.0, 2.0][way]);
         }

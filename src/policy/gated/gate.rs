@@ -197,11 +197,6 @@ impl Gate {
             || self.blind > BLIND
     }
 
-    /// Whether asking has proved itself, or nobody can tell.
-    pub(super) fn has_opened(&self) -> bool {
-        matches!(self.stage, Stage::Open { .. } | Stage::Look { ends_trial: false, .. }) || self.blind > BLIND
-    }
-
     /// Where a device never says how long it draws, nothing can be weighed.
     fn is_blind(&mut self, last: Option<FrameCost>) -> bool {
         match last {

@@ -103,11 +103,6 @@ impl<P: Policy> Gated<P> {
         self.policy.asks() && self.policy.needs_blocking()
     }
 
-    /// Whether the policy asks, and not for a trial. Without a gate it does.
-    pub(super) fn has_opened(&self) -> bool {
-        !self.has_gate() || self.state.has_opened()
-    }
-
     fn own_dials(&self) -> Vec<Dial> {
         vec![
             Dial::choice("gate", self.gate, SWITCH, "draw the whole frustum where asking does not pay"),

@@ -39,14 +39,14 @@ fn run(frames: u32, frame: impl Fn(u32, u32) -> Frame) -> Sums {
                 if probe {
                     gate.probed(1.0 - drawn as f32 / in_view, in_view, 0.3, 32);
                 }
-                FrameCost { total: whole, draw: 0.95 * whole, drawn: in_view as u32 }
+                FrameCost { total: whole, draw: 0.95 * whole, drawn: in_view as u32, is_late: false }
             }
             Plan::Ask { count } => {
                 if count {
                     gate.counted(in_view);
                 }
                 sums.asked += 1;
-                FrameCost { total: asking, draw: drawing, drawn }
+                FrameCost { total: asking, draw: drawing, drawn, is_late: false }
             }
         };
         sums.gate += cost.total;
@@ -141,13 +141,14 @@ fn dear_frames_are_probed_no_more_often_than_others() {
                     gate.probed(if turned { 0.0 } else { 0.9 }, 10_000.0, 0.3, 32);
                 }
                 let total = if turned { 20.0 * (1.0 + number as f32 / 10_000.0) } else { 5.0 };
-                FrameCost { total, draw: total, drawn: 10_000 }
+                FrameCost { total, draw: total, drawn: 10_000, is_late: false }
             }
             Plan::Ask { count } => {
                 if count {
                     gate.counted(10_000.0);
                 }
-                FrameCost { total: if turned { 30.0 } else { 5.5 }, draw: 1.0, drawn: 1000 }
+                let total = if turned { 30.0 } else { 5.5 };
+                FrameCost { total, draw: 1.0, drawn: 1000, is_late: false }
             }
         };
         last = Some(cost);
@@ -173,7 +174,7 @@ fn a_look_ends_though_a_time_is_lost() {
                 Plan::Ask { .. } => 18.0,
             };
             let drawn = if matches!(plan, Plan::Ask { .. }) { 1000 } else { 10_000 };
-            last = (number != lost).then_some(FrameCost { total, draw: 1.0, drawn });
+            last = (number != lost).then_some(FrameCost { total, draw: 1.0, drawn, is_late: false });
         }
         assert!(whole < 30, "without frame {lost}: {whole} drawn whole");
     }
