@@ -184,6 +184,28 @@ fn behind_a_gate_nothing_is_lost() {
     }
 }
 
+/// While ways of culling race, by times that mean nothing, each takes over from any other.
+#[test]
+fn while_ways_race_nothing_is_lost() {
+    let first = Arc::new(AtomicU32::new(0));
+    let frames = 8 * FRAMES;
+    let outcomes = (0..12u64).into_par_iter().map(|seed| {
+        let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+        let tree = trees()[seed as usize % trees().len()].clone();
+        let policy = Tally { inner: Fickle(policy::Auto::default()), key: "auto_hroc", sum: first.clone() };
+        let outcome = match seed % 2 {
+            0 => run(&mut stage, tree, policy, &mut SoftwareQueries::new(), frames),
+            _ => run(&mut stage, tree, policy, &mut faulty(seed), frames),
+        };
+        assert_eq!(outcome.lost, 0, "an object was lost in random world {seed}");
+        outcome.culled
+    });
+    let culled: usize = outcomes.sum();
+    let first = first.load(Ordering::Relaxed);
+    println!("{first} of {} frames went the first way, {culled} objects culled", 12 * frames);
+    assert!(first > 48 && first < 9 * frames && culled > 0, "{first}, {culled}");
+}
+
 /// A policy that culls what was hidden in the last frame must be found out.
 #[test]
 fn trust_in_old_answers_is_found_out() {

@@ -7,11 +7,12 @@ use tercet::{Counter, FrameCost};
 
 pub struct Fickle<P>(pub P);
 
-/// Twelve frames in which questions cost nothing, and twelve in which they cost much.
+/// Twelve frames in which questions cost nothing, and twelve in which they cost much; now a device's, now not.
 fn told<'a>(cx: &Context<'a>) -> Context<'a> {
     let objects = 1 + cx.frame * 7 % 50;
     let seconds = if (cx.frame / 12).is_multiple_of(2) { 1e-3 } else { 1.0 };
-    let last = FrameCost { total: seconds * objects as f32, draw: 1e-3, drawn: objects, is_late: false };
+    let (total, is_late) = (seconds * objects as f32, !(cx.frame / 30).is_multiple_of(2));
+    let last = FrameCost { total, draw: 1e-3, drawn: objects, is_late };
     Context { costs: cx.costs.after(last), ..*cx }
 }
 

@@ -34,8 +34,6 @@ pub fn assert_culls_most(name: &str, outcome: Outcome) {
         "chc++" => 0.2,
         // On a screen this small, four texels say little about a rectangle.
         "hi-z" => 0.25,
-        // A third of the time it may find that asking does not pay.
-        "auto" => 0.2,
         "statistical" | "chc" | "nohc" => 0.4,
         _ => 0.55,
     };
@@ -75,8 +73,8 @@ pub fn dialled(name: &str, variant: u64) -> Box<dyn Policy> {
         ("nohc", 0) => &[("caution", "0")],
         ("nohc", 1) => &[("in_flight", "1"), ("caution", "10")],
         ("nohc", 2) => &[("in_flight", "64"), ("caution", "0")],
-        // Its ways in turn; else times are whatever they are here, so it is not left to them whether it asks.
-        ("auto", 1 | 2) => &[("race", "false")],
+        // Times are whatever they are here, so it is not left to them whether it asks.
+        ("auto", _) => &[("race", "false")],
         ("hierarchy-b", 2) => &[("whole", "true")],
         ("hierarchy-c", 1 | 2) => &[("p_vp", "1")],
         ("roc" | "hi-z", 1) => &[("occluder_filtering", "true"), ("near_first", "false")],
