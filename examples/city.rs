@@ -7,8 +7,6 @@
 //! cargo run --release --example city -- --help
 //! ```
 
-pub mod support;
-
 use clap::Args;
 use support::demo;
 use support::flags::Flags;

@@ -8,8 +8,6 @@
 //!
 //! The engine is used in `support/headless.rs` and `support/window/`.
 
-pub mod support;
-
 use support::demo;
 use support::flags::Flags;
 use support::scenario::Scenario;

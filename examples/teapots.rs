@@ -7,8 +7,6 @@
 //! cargo run --release --example teapots -- --help
 //! ```
 
-pub mod support;
-
 use support::demo;
 use support::flags::Flags;
 use support::scenario::Scenario;

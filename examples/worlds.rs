@@ -7,8 +7,6 @@
 //! cargo run --release --example worlds -- --help
 //! ```
 
-pub mod support;
-
 use clap::{Args, ValueEnum};
 use support::demo;
 use support::flags::Flags;

@@ -6,10 +6,10 @@ use plotters::prelude::*;
 
 use crate::outcome::Outcome;
 use crate::plan::{Plan, Sweep};
-use crate::support::axis::plain;
-use crate::support::canvas::{self, FAINT, INK, Key, Sheet, px, text};
-use crate::support::chart::panel;
-use crate::support::flags::Flags;
+use support::axis::plain;
+use support::canvas::{self, FAINT, INK, Key, Sheet, px, text};
+use support::chart::panel;
+use support::flags::Flags;
 
 const WIDTH: u32 = 1500;
 /// Of the heading.

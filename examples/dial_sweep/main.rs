@@ -11,8 +11,6 @@ mod figure;
 mod outcome;
 mod plan;
 mod report;
-#[path = "../support/mod.rs"]
-pub mod support;
 
 use std::fs;
 

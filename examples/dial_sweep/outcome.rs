@@ -1,8 +1,8 @@
 //! A world, and what all trees measured in it.
 
 use crate::plan::Plan;
-use crate::support::lockstep::Measured;
-use crate::support::report::{Summary, percentile};
+use support::lockstep::Measured;
+use support::report::{Summary, percentile};
 
 /// What the sweep found in a world.
 pub struct Outcome {

@@ -9,10 +9,10 @@ use serde::Serialize;
 
 use crate::outcome::Outcome;
 use crate::plan::{Plan, Point};
-use crate::support::flags::Flags;
-use crate::support::markdown::{command, known, percent, ratio, table};
-use crate::support::report::{round, write_csv};
-use crate::support::table::count;
+use support::flags::Flags;
+use support::markdown::{command, known, percent, ratio, table};
+use support::report::{round, write_csv};
+use support::table::count;
 
 /// A line of `dial_sweep.csv`: means a frame, unless it says otherwise. The oracle's figures are
 /// empty without `--oracle`.

@@ -3,9 +3,9 @@
 use plotters::style::RGBColor;
 use tercet::policy;
 
-use crate::support::flags::Flags;
-use crate::support::lockstep::Lane;
-use crate::support::stage::Stage;
+use support::flags::Flags;
+use support::lockstep::Lane;
+use support::stage::Stage;
 
 /// A policy with its dials.
 pub struct Algorithm {

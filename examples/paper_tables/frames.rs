@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::Context;
 
-use crate::support::lockstep::Measured;
-use crate::support::report::FrameRecord;
+use support::lockstep::Measured;
+use support::report::FrameRecord;
 
 /// Writes a line a frame, after the names of the scene and of the algorithm that ran it.
 pub fn write<'a>(

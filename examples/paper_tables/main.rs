@@ -16,8 +16,6 @@ mod frames;
 mod hroc;
 mod kt2005;
 mod output;
-#[path = "../support/mod.rs"]
-pub mod support;
 
 use anyhow::ensure;
 use clap::{Args, ValueEnum};

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::support::flags::Flags;
-use crate::support::lockstep::{self, Lane, Measured};
-use crate::support::scenario::Scenario;
+use support::flags::Flags;
+use support::lockstep::{self, Lane, Measured};
+use support::scenario::Scenario;
 
 /// The files of one table, with a bar that shows how long it will take.
 pub struct Output {

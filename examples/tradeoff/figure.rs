@@ -9,10 +9,10 @@ use plotters::prelude::*;
 use crate::dials;
 use crate::figures::Figures;
 use crate::outcome::{BASE, COMBINED, Outcome, PRESET, Row};
-use crate::support::axis::plain;
-use crate::support::canvas::{self, INK, Key, Sheet, px, text};
-use crate::support::chart::panel;
-use crate::support::flags::Flags;
+use support::axis::plain;
+use support::canvas::{self, INK, Key, Sheet, px, text};
+use support::chart::panel;
+use support::flags::Flags;
 
 const WIDTH: u32 = 1500;
 const PANEL_HEIGHT: u32 = 460;

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use hecs::Entity;
 use serde::{Deserialize, Serialize};
 
-use crate::support::lockstep::Measured;
-use crate::support::report::{FrameRecord, round};
+use support::lockstep::Measured;
+use support::report::{FrameRecord, round};
 
 /// A setting's figures: a line of the resume file, and of the tables. Shares are of 1, and of all
 /// samples of a frame.

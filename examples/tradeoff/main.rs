@@ -16,8 +16,6 @@ mod report;
 mod resume;
 mod runner;
 mod search;
-#[path = "../support/mod.rs"]
-pub mod support;
 mod together;
 mod worlds;
 

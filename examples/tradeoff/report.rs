@@ -9,11 +9,11 @@ use serde::Serialize;
 
 use crate::figures::Figures;
 use crate::outcome::{Found, Outcome, Row};
-use crate::support::flags::Flags;
-use crate::support::markdown::{command, percent, setting, table};
-use crate::support::report::write_csv;
-use crate::support::table::count;
 use crate::together;
+use support::flags::Flags;
+use support::markdown::{command, percent, setting, table};
+use support::report::write_csv;
+use support::table::count;
 
 /// A line of `tradeoff.csv`. Shares are of 1; see [`Figures`].
 #[derive(Debug, Serialize)]

@@ -5,9 +5,9 @@ use indicatif::ProgressBar;
 use crate::dials::Setting;
 use crate::figures::{Figures, base_of};
 use crate::resume::{Line, Resume};
-use crate::support::flags::Flags;
-use crate::support::lockstep::{self, Lane};
 use crate::worlds::World;
+use support::flags::Flags;
+use support::lockstep::{self, Lane};
 
 /// Settings that run side by side, beside two copies of the base: each holds a scene of its own.
 const BATCH: usize = 6;

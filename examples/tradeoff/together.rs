@@ -6,8 +6,8 @@ use crate::figures::Figures;
 use crate::outcome::{Outcome, Row};
 use crate::pareto::front;
 use crate::report::share;
-use crate::support::markdown::{percent, table};
-use crate::support::table::count;
+use support::markdown::{percent, table};
+use support::table::count;
 
 /// A setting's figures in all worlds.
 struct Together<'a> {

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use crate::support::flags::Flags;
-use crate::support::gltf::GltfScene;
-use crate::support::scenario::Scenario;
+use support::flags::Flags;
+use support::gltf::GltfScene;
+use support::scenario::Scenario;
 
 /// A world that is generated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -6,9 +6,6 @@
 //! cargo run --release --example view -- --help
 //! ```
 
-#[path = "../support/mod.rs"]
-pub mod support;
-
 use std::path::PathBuf;
 
 use clap::Args;

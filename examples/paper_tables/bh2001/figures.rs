@@ -7,10 +7,10 @@ use super::points::{self, Point};
 use super::walks::{WALKS, Walk};
 use super::{SPEEDS, TREES, TreeKind};
 use crate::output::Output;
-use crate::support::axis::{nice_top, plain};
-use crate::support::canvas::{self, Key, Sheet, px};
-use crate::support::chart::panel;
-use crate::support::flags::Flags;
+use support::axis::{nice_top, plain};
+use support::canvas::{self, Key, Sheet, px};
+use support::chart::panel;
+use support::flags::Flags;
 
 const SIZE: (u32, u32) = (1200, 820);
 

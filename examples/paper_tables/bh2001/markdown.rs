@@ -3,9 +3,9 @@
 use super::points::{self, Point};
 use super::walks::{WALKS, Walk};
 use super::{SPEEDS, TREES, TreeKind};
-use crate::support::flags::Flags;
-use crate::support::markdown::{command, known, percent, setting, table};
-use crate::support::table::count;
+use support::flags::Flags;
+use support::markdown::{command, known, percent, setting, table};
+use support::table::count;
 
 /// The whole page.
 pub fn page(flags: &Flags, points: &[Point]) -> anyhow::Result<String> {

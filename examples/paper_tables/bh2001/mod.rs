@@ -14,11 +14,11 @@ use tercet::policy::{self, Policy};
 use tercet::tree::{Straddlers, TreeConfig};
 
 use crate::output::Output;
-use crate::support::flags::Flags;
-use crate::support::lockstep::Lane;
-use crate::support::markdown::percent;
-use crate::support::report::write_csv;
 use points::Point;
+use support::flags::Flags;
+use support::lockstep::Lane;
+use support::markdown::percent;
+use support::report::write_csv;
 use walks::{WALKS, Walk};
 
 /// How much of the worlds is built, unless the command line says otherwise.

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::TreeKind;
 use super::walks::Walk;
-use crate::support::lockstep::Measured;
-use crate::support::report::{FrameRecord, percentile, round};
+use support::lockstep::Measured;
+use support::report::{FrameRecord, percentile, round};
 
 /// A line of `bh2001.csv`: means a frame, unless it says otherwise. The first frame of a walk, which
 /// has nothing to remember, is left out.

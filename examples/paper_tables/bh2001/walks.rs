@@ -1,7 +1,7 @@
 //! The ways that are walked: always the same metres, in more or fewer frames.
 
-use crate::support::flags::Flags;
-use crate::support::scenario::{Flight, Scenario};
+use support::flags::Flags;
+use support::scenario::{Flight, Scenario};
 
 /// A way through a world, and what the paper measured on its own.
 #[derive(Clone, Copy)]

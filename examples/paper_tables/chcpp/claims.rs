@@ -2,7 +2,7 @@
 
 use super::Outcome;
 use super::algorithms::{CHC, NOHC, OPT, PLUS_PLUS, VFC};
-use crate::support::lockstep::Measured;
+use support::lockstep::Measured;
 
 /// A figure that the paper gives, as a ratio of two algorithms.
 pub struct Claim {

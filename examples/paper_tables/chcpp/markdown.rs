@@ -6,9 +6,9 @@ use super::Outcome;
 use super::algorithms::{ALGORITHMS, OPT, VFC};
 use super::claims::{CLAIMS, Claim};
 use super::shading::{self, Shaded};
-use crate::support::flags::Flags;
-use crate::support::markdown::{command, known, lost, setting, table};
-use crate::support::table::count;
+use support::flags::Flags;
+use support::markdown::{command, known, lost, setting, table};
+use support::table::count;
 
 /// The whole page.
 pub fn page(flags: &Flags, outcomes: &[Outcome], shaded: &[Shaded]) -> anyhow::Result<String> {

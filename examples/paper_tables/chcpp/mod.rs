@@ -17,11 +17,11 @@ mod shading;
 
 use crate::frames;
 use crate::output::Output;
-use crate::support::flags::Flags;
-use crate::support::lockstep::Measured;
-use crate::support::report::write_csv;
 use algorithms::{ALGORITHMS, OPT, PLUS_PLUS, POLICIES, VFC};
 use scenes::SCENES;
+use support::flags::Flags;
+use support::lockstep::Measured;
+use support::report::write_csv;
 
 /// How much of the city is built, unless the command line says otherwise.
 const SCALE: f32 = 0.25;

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::Outcome;
 use super::algorithms::{ALGORITHMS, OPT};
-use crate::support::lockstep::Measured;
-use crate::support::report::round;
+use support::lockstep::Measured;
+use support::report::round;
 
 /// A line of `chcpp.csv`: means a frame, unless it says otherwise. The oracle's figures are empty
 /// without `--oracle`, and what a policy does not count itself is.

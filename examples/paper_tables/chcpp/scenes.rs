@@ -1,8 +1,8 @@
 //! The city, which stands in for the paper's Vienna and Pompeii: along its streets, above its
 //! roofs, and at a run.
 
-use crate::support::flags::Flags;
-use crate::support::scenario::{Flight, Scenario};
+use support::flags::Flags;
+use support::scenario::{Flight, Scenario};
 
 /// A way through the city.
 #[derive(Clone, Copy)]

@@ -3,10 +3,10 @@
 use super::Outcome;
 use super::algorithms::{ALGORITHMS, VFC};
 use crate::output::Output;
-use crate::support::canvas::{self, Key};
-use crate::support::chart::{self, Curve, log_axes, panel};
-use crate::support::flags::Flags;
-use crate::support::report::FrameRecord;
+use support::canvas::{self, Key};
+use support::chart::{self, Curve, log_axes, panel};
+use support::flags::Flags;
+use support::report::FrameRecord;
 
 const WIDTH: u32 = 1400;
 /// Of the heading.

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use super::Outcome;
 use super::algorithms::{ALGORITHMS, AUTO, FILTERED, HI_Z, HROC, HYBRID, ROC, VFC};
-use crate::support::flags::Flags;
-use crate::support::markdown::{command, known, lost, percent, setting, table};
-use crate::support::table::count;
+use support::flags::Flags;
+use support::markdown::{command, known, lost, percent, setting, table};
+use support::table::count;
 
 /// The whole page.
 pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {

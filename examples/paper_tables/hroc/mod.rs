@@ -14,11 +14,11 @@ mod scenes;
 
 use crate::frames;
 use crate::output::Output;
-use crate::support::flags::Flags;
-use crate::support::lockstep::Measured;
-use crate::support::report::write_csv;
 use algorithms::{ALGORITHMS, FILTERED, REF, VFC};
 use scenes::{SCENES, Scene};
+use support::flags::Flags;
+use support::lockstep::Measured;
+use support::report::write_csv;
 
 /// How much of each world is built, unless the command line says otherwise.
 const SCALE: f32 = 0.25;

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::Outcome;
 use super::algorithms::ALGORITHMS;
-use crate::support::lockstep::Measured;
-use crate::support::report::round;
+use support::lockstep::Measured;
+use support::report::round;
 
 /// A line of `hroc.csv`: means a frame, unless it says otherwise.
 #[derive(Debug, Serialize)]

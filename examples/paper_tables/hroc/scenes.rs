@@ -1,8 +1,8 @@
 //! The worlds after the paper's scenes, and the moving bunnies.
 
 use super::published::{self, Published};
-use crate::support::flags::Flags;
-use crate::support::scenario::Scenario;
+use support::flags::Flags;
+use support::scenario::Scenario;
 
 /// A world and the way through it.
 pub struct Scene {

@@ -9,12 +9,12 @@ use super::Outcome;
 use super::rows::seconds;
 use super::scenes::Published;
 use crate::output::Output;
-use crate::support::axis::{nice_top, plain};
-use crate::support::canvas::{self, FAINT, GRID, INK, Key, Sheet, px, text};
-use crate::support::chart::{self, Curve, axes, panel};
-use crate::support::flags::Flags;
-use crate::support::lockstep::Measured;
-use crate::support::report::FrameRecord;
+use support::axis::{nice_top, plain};
+use support::canvas::{self, FAINT, GRID, INK, Key, Sheet, px, text};
+use support::chart::{self, Curve, axes, panel};
+use support::flags::Flags;
+use support::lockstep::Measured;
+use support::report::FrameRecord;
 
 const SIZE: (u32, u32) = (1400, 1180);
 /// Panels side by side, and one below the other.

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use super::Outcome;
 use super::rows::{self, seconds};
 use super::scenes::Published;
-use crate::support::flags::Flags;
-use crate::support::lockstep::Measured;
-use crate::support::markdown::{command, known, percent, ratio, setting, table};
-use crate::support::table::count;
+use support::flags::Flags;
+use support::lockstep::Measured;
+use support::markdown::{command, known, percent, ratio, setting, table};
+use support::table::count;
 
 /// The whole page.
 pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {

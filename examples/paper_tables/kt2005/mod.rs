@@ -17,11 +17,11 @@ use tercet::tree::Straddlers;
 
 use crate::frames;
 use crate::output::Output;
-use crate::support::flags::Flags;
-use crate::support::lockstep::{Lane, Measured};
-use crate::support::report::write_csv;
-use crate::support::table::count;
 use scenes::{SCENES, Scene};
+use support::flags::Flags;
+use support::lockstep::{Lane, Measured};
+use support::report::write_csv;
+use support::table::count;
 
 /// A scene of the table, measured.
 pub struct Outcome {

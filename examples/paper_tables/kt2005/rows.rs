@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::Outcome;
 use super::scenes::Published;
-use crate::support::lockstep::Measured;
-use crate::support::report::round;
+use support::lockstep::Measured;
+use support::report::round;
 
 /// The algorithms, as the files call them.
 pub const NEW: &str = "new";

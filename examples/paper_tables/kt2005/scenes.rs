@@ -1,7 +1,7 @@
 //! The five scenes, and what the paper measured in them.
 
-use crate::support::flags::Flags;
-use crate::support::scenario::Scenario;
+use support::flags::Flags;
+use support::scenario::Scenario;
 
 /// A scene of table 1.
 #[derive(Clone, Copy, Debug)]

@@ -8,8 +8,8 @@ use tercet::record::Logged;
 use tercet::scene::Scene;
 
 use super::{Drawn, Watched};
-use crate::support::painter::Painter;
-use crate::support::run::Eye;
+use crate::painter::Painter;
+use crate::run::Eye;
 
 /// The software backend, with the renderer for its passes.
 pub struct SoftwareStage {

@@ -12,7 +12,7 @@ use tercet::scene::Scene;
 use wgpu::{TextureFormat, TextureUsages, TextureView};
 
 use super::{Drawn, Gpu, Watched};
-use crate::support::run::Eye;
+use crate::run::Eye;
 
 /// The sky, as sRGB shows it.
 const SKY: wgpu::Color = wgpu::Color { r: 0.74, g: 0.82, b: 0.91, a: 1.0 };

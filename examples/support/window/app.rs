@@ -15,8 +15,8 @@ use super::engine::Engine;
 use super::fly::Fly;
 use super::screenshot::Screenshots;
 use super::{PANELS, frozen, panel, pick, plots};
-use crate::support::flags::Flags;
-use crate::support::stage::{Picture, Stage};
+use crate::flags::Flags;
+use crate::stage::{Picture, Stage};
 
 const LAYER_KEYS: [Key; 6] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
 

@@ -10,7 +10,7 @@ use tercet::scene::ObjectRef;
 
 use super::engine::Engine;
 use super::states;
-use crate::support::stage::{Asked, Gpu, Picture, Stage};
+use crate::stage::{Asked, Gpu, Picture, Stage};
 
 /// What is to be seen.
 #[derive(Clone, Copy, Debug, Default)]

@@ -8,14 +8,14 @@ use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::TreeConfig;
 use tercet::worlds::Pose;
 
-use crate::support::audits::Audits;
-use crate::support::flags::Flags;
-use crate::support::painter::Painter;
-use crate::support::reference::Reference;
-use crate::support::report::FrameRecord;
-use crate::support::run::{Eye, Frame};
-use crate::support::scenario::Scenario;
-use crate::support::stage::{Gpu, Stage};
+use crate::audits::Audits;
+use crate::flags::Flags;
+use crate::painter::Painter;
+use crate::reference::Reference;
+use crate::report::FrameRecord;
+use crate::run::{Eye, Frame};
+use crate::scenario::Scenario;
+use crate::stage::{Gpu, Stage};
 
 /// Frames that the plots go back.
 const REMEMBERED: usize = 300;

@@ -4,7 +4,7 @@ use eframe::egui::{Key, PointerButton, Response};
 use glam::{Mat3, Vec3};
 use tercet::worlds::Pose;
 
-use crate::support::scenario::Flight;
+use crate::scenario::Flight;
 
 /// Radians for a point that the mouse is dragged.
 const TURN: f32 = 0.003;

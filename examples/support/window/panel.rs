@@ -8,9 +8,9 @@ use super::display::Layers;
 use super::engine::Engine;
 use super::fly::Fly;
 use super::{dials, states};
-use crate::support::audits::Audits;
-use crate::support::stage::Stage;
-use crate::support::table::count;
+use crate::audits::Audits;
+use crate::stage::Stage;
+use crate::table::count;
 
 const KEYS: &str = "W A S D, Q E: fly · Shift: faster · wheel: speed
 drag: look · P: follow the flight · Space: pause

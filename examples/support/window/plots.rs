@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use eframe::egui::{Color32, Ui};
 use egui_plot::{Legend, Line, Plot, PlotPoints};
 
-use crate::support::report::FrameRecord;
+use crate::report::FrameRecord;
 
 /// A curve: its name, and what it shows of a frame.
 type Curve = (&'static str, fn(&FrameRecord) -> f64);

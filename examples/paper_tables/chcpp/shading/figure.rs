@@ -5,12 +5,12 @@ use plotters::prelude::*;
 use super::{COMPARED, LOOK_UPS, Shaded};
 use crate::chcpp::algorithms::ALGORITHMS;
 use crate::output::Output;
-use crate::support::axis::{nice_top, plain};
-use crate::support::canvas::{self, Key, Sheet, px};
-use crate::support::chart::panel;
-use crate::support::flags::Flags;
-use crate::support::lockstep::Measured;
-use crate::support::stage::Gpu;
+use support::axis::{nice_top, plain};
+use support::canvas::{self, Key, Sheet, px};
+use support::chart::panel;
+use support::flags::Flags;
+use support::lockstep::Measured;
+use support::stage::Gpu;
 
 const SIZE: (u32, u32) = (1200, 480);
 

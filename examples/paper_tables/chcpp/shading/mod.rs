@@ -12,10 +12,10 @@ use super::algorithms::{ALGORITHMS, CHC, OPT, PLUS_PLUS, VFC};
 use super::scenes::SCENES;
 use crate::algorithm::Algorithm;
 use crate::output::Output;
-use crate::support::flags::{Backend, Flags};
-use crate::support::lockstep::Measured;
-use crate::support::report::write_csv;
-use crate::support::stage::{Gpu, Stage, WgpuStage};
+use support::flags::{Backend, Flags};
+use support::lockstep::Measured;
+use support::report::write_csv;
+use support::stage::{Gpu, Stage, WgpuStage};
 
 pub use page::section;
 

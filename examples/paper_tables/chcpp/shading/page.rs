@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use super::{COMPARED, PART, Shaded};
 use crate::chcpp::algorithms::ALGORITHMS;
-use crate::support::lockstep::Measured;
-use crate::support::markdown::{known, lost, table};
-use crate::support::table::count;
+use support::lockstep::Measured;
+use support::markdown::{known, lost, table};
+use support::table::count;
 
 /// A heading, a table of times, and what they are of.
 pub fn section(all: &[Shaded]) -> String {

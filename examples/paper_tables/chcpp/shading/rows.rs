@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Shaded;
-use crate::support::report::round;
+use support::report::round;
 
 /// Means a frame, unless it says otherwise.
 #[derive(Debug, Serialize)]
