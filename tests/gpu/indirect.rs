@@ -6,6 +6,7 @@ use tercet::geom::{Aabb, DepthFormat, Frustum, View, Viewport};
 use tercet::query::SweepTest;
 use tercet::query::gpu::{BatchMesh, IndirectBatch, IndirectConfig, IndirectCuller, IndirectStats};
 use tercet::scene::{Batch, ObjectSet, Scene, SceneConfig, Traits};
+use tercet::tree::TreeConfig;
 use tercet::worlds::{self, Model, Pathology};
 
 use crate::indirect_renderer::Renderer;
@@ -14,6 +15,7 @@ use crate::support::{Gpu, depth_texture, gpus, read_buffer, read_depth, targets}
 
 const SCREEN: Viewport = Viewport::new(96, 54);
 const FRAMES: u32 = 12;
+const TESTS: [SweepTest; 3] = [SweepTest::HiZ, SweepTest::Raster, SweepTest::Rays];
 
 /// What a run came to, over all frames.
 #[derive(Clone, Copy, Debug, Default)]
@@ -87,7 +89,7 @@ pub fn run(
     outcome: &mut Outcome,
 ) {
     let mut stage = Stage::new(model, seed, SCREEN, true);
-    let mut scene = Scene::new(SceneConfig::default());
+    let mut scene = Scene::new(fine());
     let mut renderer = Renderer::new(gpu);
     for frame in 0..FRAMES {
         let view = stage.next(frame);
@@ -134,6 +136,12 @@ fn view(gpu: &Gpu, config: IndirectConfig) -> IndirectCuller {
     IndirectCuller::new(&gpu.device, &gpu.queue, config).expect("a view")
 }
 
+/// A tree of some depth: small leaves from the beginning.
+fn fine() -> SceneConfig {
+    let tree = TreeConfig { bulk_leaf: 2, unasked_leaf: 2, ..TreeConfig::stable() };
+    SceneConfig { tree, ..SceneConfig::default() }
+}
+
 fn config(test: SweepTest) -> IndirectConfig {
     IndirectConfig { test, ..IndirectConfig::default() }
 }
@@ -141,8 +149,9 @@ fn config(test: SweepTest) -> IndirectConfig {
 #[test]
 fn random_worlds() {
     for gpu in gpus() {
-        for test in [SweepTest::HiZ, SweepTest::Raster] {
-            for &samples in gpu.sample_counts() {
+        let mut by_raster = Vec::new();
+        for test in TESTS {
+            for (i, &samples) in gpu.sample_counts().iter().enumerate() {
                 let mut eye = view(&gpu, config(test));
                 let mut all = Outcome::default();
                 for seed in 0..3 {
@@ -156,6 +165,11 @@ fn random_worlds() {
                 assert!(all.hidden.min(all.visible) > 300, "there are things to hide: {all:?}");
                 assert!(all.culled * 3 > all.hidden, "{what} culled little: {all:?}");
                 assert!(all.drawn.iter().all(|&drawn| drawn > 0), "{what}: {all:?}");
+                match test {
+                    SweepTest::Raster => by_raster.push(all.drawn),
+                    SweepTest::Rays => assert_eq!(all.drawn, by_raster[i], "{what}: not what rasters find"),
+                    _ => {}
+                }
             }
         }
     }
@@ -166,13 +180,16 @@ fn random_worlds() {
 fn pathological_worlds() {
     for gpu in gpus() {
         let mut all = Outcome::default();
-        let tests = [SweepTest::HiZ, SweepTest::Raster];
-        let mut eyes = tests.map(|test| view(&gpu, config(test)));
+        let mut eyes = TESTS.map(|test| view(&gpu, config(test)));
         for (kind, seed) in Pathology::ALL.into_iter().zip(0..) {
-            for (&samples, eye) in gpu.sample_counts().iter().zip(&mut eyes) {
-                let target = (DepthFormat::Depth32Float, samples);
-                run(&gpu, eye, (worlds::pathological(kind), seed), target, &mut all);
-                assert_eq!((all.lost, all.wrong, all.disorder), (0, 0, 0), "{kind:?}: {all:?}");
+            // Rays with each number of samples, the others with one.
+            let [others @ .., rays] = &mut eyes;
+            for (&samples, other) in gpu.sample_counts().iter().zip(others) {
+                for eye in [other, &mut *rays] {
+                    let target = (DepthFormat::Depth32Float, samples);
+                    run(&gpu, eye, (worlds::pathological(kind), seed), target, &mut all);
+                    assert_eq!((all.lost, all.wrong, all.disorder), (0, 0, 0), "{kind:?}: {all:?}");
+                }
             }
         }
         println!("{:?}: {all:?}", gpu.backend);
@@ -183,7 +200,7 @@ fn pathological_worlds() {
 /// What the lists of some frames should hold, and what they hold: nothing is drawn, so what lies in
 /// view is visible, and what lies behind the eye is not. Returns how many lists are wrong.
 pub fn wrong_lists(gpu: &Gpu, config: IndirectConfig, count: usize) -> usize {
-    let mut scene = Scene::new(SceneConfig::default());
+    let mut scene = Scene::new(fine());
     let z = |i: usize| if i * i % 7 < 4 { -5.0 } else { 5.0 };
     for i in 0..count {
         let place = glam::Vec3::new((i % 50) as f32 * 0.1 - 2.5, (i / 50 % 30) as f32 * 0.1 - 1.5, z(i));
@@ -194,7 +211,7 @@ pub fn wrong_lists(gpu: &Gpu, config: IndirectConfig, count: usize) -> usize {
     let mut eye = view(gpu, config);
     let mut wrong = 0;
     let mut before = ObjectSet::default();
-    for toward in [-1.0, -1.0, 1.0, -1.0] {
+    for toward in [-1.0, -1.0, -1.0, 1.0, -1.0] {
         let target = glam::Vec3::Z * toward;
         let view = View::look_at(glam::Vec3::ZERO, target, 90.0, 0.1, SCREEN).expect("a view");
         let depth = depth_texture(gpu, &view);
@@ -244,7 +261,7 @@ pub fn wrong_lists(gpu: &Gpu, config: IndirectConfig, count: usize) -> usize {
 fn lists_hold_what_is_visible_in_order() {
     for gpu in gpus() {
         for count in [1, 256, 1000, 70_000] {
-            for test in [SweepTest::HiZ, SweepTest::Raster] {
+            for test in TESTS {
                 assert_eq!(wrong_lists(&gpu, config(test), count), 0, "{:?}, {count}, {test:?}", gpu.backend);
             }
         }
