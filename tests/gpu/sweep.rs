@@ -12,7 +12,7 @@ use tercet::scene::{ObjectId, ObjectSet, Scene, SceneConfig, Traits};
 use tercet::tree::{NodeId, TreeConfig};
 
 use crate::geometry::{Case, Sample, random_case};
-use crate::support::{Gpu, Nearness, clip, depth_of, gpus, targets};
+use crate::support::{Gpu, Nearness, clip, depth_of, gpus, gpus_with, targets};
 use crate::twin::{Convention, conventions, occluders, plain_any, view_of};
 
 /// What a comparison met.
@@ -304,6 +304,41 @@ fn stages_equal_their_twins() {
             assert!(tally.fewer == 0 && tally.more * 4 < tally.hidden, "{tally:?}");
             assert!(tally.loose * 2 < tally.hidden, "{tally:?}");
             assert!(tally.groups > 40 && tally.by_rays.iter().all(|&count| count > 200), "{tally:?}");
+        }
+    }
+}
+
+/// A device that binds few bytes: what it cannot hold of the tree is tested as by rasters.
+#[test]
+fn where_the_tree_does_not_fit_rasters_answer() {
+    let limits = wgpu::Limits { max_storage_buffer_binding_size: 1 << 16, ..wgpu::Limits::default() };
+    for gpu in gpus_with(limits) {
+        let mut queries = gpu.exact_queries(GpuConfig::default());
+        let mut dice = ChaCha8Rng::seed_from_u64(5);
+        let view = small_view(&mut dice, conventions(&gpu)[0]);
+        for (count, fits) in [(200, true), (1000, false)] {
+            let boxes = Boxes::random(&mut dice, &view, count);
+            let (depth, _) = depth_of(&gpu, &mut queries, &view, &[]);
+            queries.target(&targets(&depth, true));
+            queries.begin(&view).expect("begin");
+            let frustum = Frustum::new(&view);
+            let tree = boxes.scene.tree();
+            // Its objects fit, all of the tree's may not.
+            let group = tree.nodes().find(|node| (10..100).contains(&node.below)).expect("a small node").id;
+            let groups = [group];
+            let of = |test| Sweep {
+                scene: &boxes.scene,
+                view: &view,
+                frustum: &frustum,
+                groups: &groups,
+                loose: &[],
+                test,
+            };
+            let raster = sweep(&mut queries, &of(SweepTest::Raster));
+            let rays = sweep(&mut queries, &of(SweepTest::Rays));
+            assert!(raster.slots().eq(rays.slots()));
+            assert_eq!(queries.stats().groups, u64::from(fits), "{:?}, {count} objects", gpu.backend);
+            queries.end().expect("end");
         }
     }
 }

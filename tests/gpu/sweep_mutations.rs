@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use tercet::query::SweepTest;
 use tercet::query::gpu::{GpuConfig, GpuQueries, IndirectConfig, Shader, Shaders};
 
-use crate::indirect::wrong_lists;
+use crate::indirect::{wrong_groups, wrong_lists};
 use crate::owners;
 use crate::support::{gpus, skip};
 use crate::sweep::Twin;
@@ -175,8 +175,8 @@ fn wrong_lists_are_found_out() {
         ("at = node.enter;", "at = node.skip;"),
         ("Listed(rect, place)", "Listed(rect, place / 2u)"),
         ("place < node.end", "place + 1u < node.end"),
-        ("atomicAdd(&draws[5], 1u)", "atomicAdd(&draws[1], 1u)"),
-        ("atomicAdd(&draws[1], 1u)", "atomicAdd(&draws[5], 1u)"),
+        ("atomicAdd(&draws[5], 1u)", "atomicAdd(&draws[4], 1u)"),
+        ("atomicAdd(&draws[1], 1u)", "atomicAdd(&draws[0], 1u)"),
     ];
     const SPREAD: &[Mutation] = &[
         ("found[places[i]]", "found[i]"),
@@ -196,6 +196,33 @@ fn wrong_lists_are_found_out() {
             // What is carried from one step of the sum to the next shows only with many objects.
             let count = if mutation.0.starts_with("carried") { 140_000 } else { 1000 };
             assert!(wrong_lists(&gpu, config, count) > 0, "{mutation:?} was not found out");
+        }
+    }
+}
+
+#[test]
+fn wrong_groups_are_found_out() {
+    const MARK: &[Mutation] = &[
+        ("& DRAWN) != 0u", "& DRAWN) == 0u"),
+        ("at = nodes[at].parent;", "at = NONE;"),
+        ("place < node.end", "place + 1u < node.end"),
+    ];
+    const EXTRACT: &[Mutation] = &[
+        ("size.x * size.y > most.x", "size.x * size.y >= 0.0"),
+        ("node.verdict == SEEN", "node.verdict != SEEN"),
+        ("if mark != UNKNOWN {", "if mark == 9u {"),
+    ];
+    let Some(gpu) = gpus().into_iter().next() else { return };
+    let passes: [(Sources, &[Mutation]); 2] =
+        [(|shaders| vec![&mut shaders.mark], MARK), (|shaders| vec![&mut shaders.extract], EXTRACT)];
+    for (sources, mutations) in passes {
+        for &mutation in mutations {
+            let config = IndirectConfig {
+                shaders: mutated(sources, mutation),
+                test: SweepTest::Rays,
+                ..IndirectConfig::default()
+            };
+            assert!(wrong_groups(&gpu, config) > 0, "{mutation:?} was not found out");
         }
     }
 }

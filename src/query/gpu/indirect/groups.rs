@@ -12,8 +12,8 @@
 
 use bytemuck::{bytes_of, cast_slice};
 use wgpu::{
-    BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, ComputePipeline, Device, Queue,
-    ShaderStages,
+    BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, CommandEncoder, ComputePipeline,
+    Device, Queue, ShaderStages,
 };
 
 use super::super::bind::{self, DepthAs, Layouts};
@@ -99,7 +99,10 @@ impl Groups {
             draws: buffer(
                 device,
                 size_of_val(&DRAWS) as u64,
-                BufferUsages::STORAGE | BufferUsages::INDIRECT | BufferUsages::COPY_DST,
+                BufferUsages::STORAGE
+                    | BufferUsages::INDIRECT
+                    | BufferUsages::COPY_DST
+                    | BufferUsages::COPY_SRC,
             ),
             most,
             scratch: Default::default(),
@@ -200,6 +203,14 @@ impl Groups {
         rays.record(tape, &bound.frame, tree, (&self.groups, draws(0)), viewport);
         raster.record(tape, &bound.frame, &self.objects, (&self.loose, draws(1)), viewport);
         self.spread(tape);
+    }
+
+    /// Records the way of how many groups and loose objects there were into a buffer, from a byte on.
+    pub(super) fn copy_counts(&self, encoder: &mut CommandEncoder, to: &Buffer, at: u64) {
+        for which in 0..2 {
+            let from = which * size_of_val(&DRAWS[0]) as u64 + 4;
+            encoder.copy_buffer_to_buffer(&self.draws, from, to, at + 4 * which, 4);
+        }
     }
 
     /// What is known of all objects, in the order of meshes.

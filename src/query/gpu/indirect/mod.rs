@@ -106,6 +106,8 @@ pub struct IndirectStats {
     /// Of an earlier frame, if counters are asked for: objects drawn because the last frame had found
     /// them visible, because this one has, and of those that hide nothing.
     pub drawn: Option<[u32; 3]>,
+    /// The same of what was tested by rays: groups, and objects by themselves.
+    pub tested: Option<[u32; 2]>,
 }
 
 /// One indirect draw: the objects of a batch that a list holds.
@@ -175,7 +177,7 @@ pub struct IndirectCuller {
     remembered: Buffer,
     lists: [List; 3],
     counters: Option<ReadBack>,
-    drawn: Option<[u32; 3]>,
+    counted: Option<[u32; 5]>,
 }
 
 impl IndirectCuller {
@@ -214,7 +216,7 @@ impl IndirectCuller {
                 remembered: remembered(device, 64),
                 lists: std::array::from_fn(|_| List::new(device, 64, 16)),
                 counters: config.counters.then(|| ReadBack::new(device, COUNTERS)),
-                drawn: None,
+                counted: None,
                 config,
             }
         })
@@ -265,8 +267,17 @@ impl IndirectCuller {
                     draw(&mut pass, &self.batches(which));
                 }
             }
-            Ok(IndirectStats { objects: self.order.objects(), uploaded, drawn: self.drawn })
+            Ok(self.stats(uploaded))
         })?
+    }
+
+    fn stats(&self, uploaded: u64) -> IndirectStats {
+        IndirectStats {
+            objects: self.order.objects(),
+            uploaded,
+            drawn: self.counted.map(|[first, missed, last, ..]| [first, missed, last]),
+            tested: self.counted.filter(|_| self.groups.is_some()).map(|[.., groups, loose]| [groups, loose]),
+        }
     }
 
     /// Brings everything on the device up to date; returns the bytes uploaded.
@@ -327,7 +338,11 @@ impl IndirectCuller {
         }
         if let Some(groups) = &mut self.groups {
             let remembered = exactly(&self.remembered, self.boxes.len() as u32, size_of::<u32>());
-            return groups.look(tape, &self.config.shaders, bound, view, remembered);
+            groups.look(tape, &self.config.shaders, bound, view, remembered);
+            if let Some(counters) = self.counters.as_ref().filter(|it| it.state() == State::Recorded) {
+                groups.copy_counts(tape.encoder, counters.buffer(), size_of::<[u32; 3]>() as u64);
+            }
+            return;
         }
         let passes = self.passes[usize::from(view.samples() > 1)].as_mut().expect("made when bound");
         let by_pyramid = self.config.test == SweepTest::HiZ;
@@ -387,7 +402,7 @@ impl IndirectCuller {
             // By now the frame before has been submitted.
             State::Recorded => counters.await_bytes(),
             State::Arrived => {
-                self.drawn = counters.read(bytemuck::pod_read_unaligned).or(self.drawn);
+                self.counted = counters.read(bytemuck::pod_read_unaligned).or(self.counted);
                 counters.reclaim();
             }
             _ => {}
@@ -398,8 +413,8 @@ impl IndirectCuller {
     }
 }
 
-/// The bytes of all counters.
-const COUNTERS: u64 = size_of::<[u32; 3]>() as u64;
+/// The bytes of all counters: what was drawn of each list, and what was tested.
+const COUNTERS: u64 = size_of::<[u32; 5]>() as u64;
 
 fn remembered(device: &Device, slots: usize) -> Buffer {
     device.create_buffer(&BufferDescriptor {
