@@ -202,7 +202,7 @@ mod tests {
                 let index = node.id.index;
                 let mut stack = vec![node.id];
                 let mut expected = Vec::new();
-                while let Some(node) = stack.pop().filter(|_| true) {
+                while let Some(node) = stack.pop() {
                     if tree.count(node) > 0 {
                         expected.push(node.index);
                         stack.extend(tree.children(node).into_iter().flatten().rev());
