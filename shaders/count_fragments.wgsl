@@ -4,7 +4,7 @@
 @fragment
 fn count(corner: Corner) {
     let pixel = vec2<u32>(corner.position.xy);
-    let i = corner.proxy;
+    let i = corner.index;
     var proxy = proxies[i];
     let d = offset(&proxy, pixel);
     if !covers(&proxy, d) {

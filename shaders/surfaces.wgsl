@@ -63,6 +63,17 @@ fn place(vertex: Vertex, instance: Instance) -> Place {
     return Place(clip_position(world_position(vertex, instance)));
 }
 
+struct Identified {
+    @builtin(position) @invariant position: vec4<f32>,
+    @location(0) @interpolate(flat, either) id: u32,
+}
+
+// With the object's id.
+@vertex
+fn identified(vertex: Vertex, instance: Instance, @location(6) id: u32) -> Identified {
+    return Identified(clip_position(world_position(vertex, instance)), id);
+}
+
 fn unit(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
     let square = dot(v, v);
     // A NaN fails the comparison.
@@ -130,6 +141,12 @@ fn unlit(surface: Surface) -> @location(0) vec4<f32> {
 @fragment
 fn nothing() -> @location(0) vec4<f32> {
     return vec4<f32>(0.0);
+}
+
+// The id, 16 bits a channel, into the item buffer.
+@fragment
+fn owner(surface: Identified) -> @location(1) vec2<u32> {
+    return vec2<u32>(surface.id & 0xffffu, surface.id >> 16u);
 }
 
 // One layer of many that are added up: black, red, orange, yellow, white.

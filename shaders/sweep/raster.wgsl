@@ -6,7 +6,7 @@
 
 @fragment
 fn look(corner: Corner) {
-    let i = corner.proxy;
+    let i = corner.index;
     if atomicLoad(&verdicts[i]) == SEEN {
         return;
     }

@@ -7,6 +7,7 @@ use tercet::geom::{DepthFormat, Frustum, Viewport};
 use tercet::policy::{self, Policy};
 use tercet::query::gpu::{AnyBy, GpuConfig, GpuQueries, Shaders};
 use tercet::scene::{ObjectSet, Scene, SceneConfig};
+use tercet::tree::TreeConfig;
 use tercet::worlds::{self, Model, Pathology};
 
 use crate::renderer::Renderer;
@@ -28,6 +29,8 @@ struct Outcome {
     visible: usize,
     /// Samples in which the culled frame differs from the whole one.
     wrong: usize,
+    /// Groups into which rays were cast.
+    groups: u64,
     /// Submissions more than one a wave and one at the end.
     extra_submits: i64,
 }
@@ -42,7 +45,11 @@ fn run(
     outcome: &mut Outcome,
 ) {
     let mut stage = Stage::new(model, seed, SCREEN, true);
-    let mut scene = Scene::new(SceneConfig::default());
+    // Nobody asks about nodes who sweeps: leaves would stay large.
+    let sweeps = ["roc", "hroc", "hi-z", "hybrid"].contains(&policy.name());
+    let leaves = TreeConfig { bulk_leaf: 2, unasked_leaf: 2, ..TreeConfig::stable() };
+    let tree = if sweeps { leaves } else { TreeConfig::default() };
+    let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
     let mut eye = Culler::new(policy);
     let mut renderer = Renderer::new(gpu);
     for frame in 0..FRAMES {
@@ -55,6 +62,7 @@ fn run(
         queries.target(&targets(&depth, false));
         let draw = |pass: &mut _, objects: &[_]| renderer.draw(pass, &view, objects);
         let stats = eye.frame(&scene, &view, queries, draw).expect("a frame");
+        outcome.groups += queries.stats().groups;
         outcome.extra_submits += queries.stats().submits as i64 - i64::from(stats.waves) - 1;
         let mut drawn = ObjectSet::default();
         for object in eye.visible() {
@@ -154,6 +162,7 @@ fn swept_worlds() {
             assert!(all.hidden.min(all.visible) > 300, "there are things to hide: {all:?}");
             assert!(all.culled * 3 > all.hidden, "{run} culled little: {all:?}");
             assert!(all.extra_submits <= 0, "{run} submits more than once a wave: {all:?}");
+            assert!(all.groups > 100 || !["hroc", "hybrid"].contains(&name), "{run} casts no rays: {all:?}");
         }
     }
 }
@@ -165,12 +174,15 @@ fn lying_sweeps_are_found_out() {
     let mut shaders = Shaders::default();
     let lie = "if pixel.x % 8u == 0u && covers(&proxy, d)";
     shaders.sweep_raster.single = shaders.sweep_raster.single.replace("if covers(&proxy, d)", lie).into();
+    let lie = "if pixel.x % 8u == 0u && atomicLoad(&verdicts[place])";
+    let honest = "if atomicLoad(&verdicts[place])";
+    shaders.sweep_rays.single = shaders.sweep_rays.single.replace(honest, lie).into();
     let lie = "if i % 2u == 0u && proxies[i].nearest >= farthest";
     let honest = "if proxies[i].nearest >= farthest";
     shaders.sweep_hi_z.single = shaders.sweep_hi_z.single.replace(honest, lie).into();
     let config = GpuConfig { shaders, ..GpuConfig::default() };
     let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
-    for name in ["roc", "hi-z"] {
+    for name in ["roc", "hroc", "hi-z"] {
         let mut all = Outcome::default();
         for seed in 0..2 {
             let target = (DepthFormat::Depth32Float, 1);

@@ -1,11 +1,13 @@
 //! Frames that the device culls by itself: they equal the whole frame bit for bit, whatever happens
 //! between them, hidden things are culled, and what does not move is not uploaded.
 
+use glam::Vec3;
 use tercet::Error;
 use tercet::geom::{Aabb, DepthFormat, Frustum, View, Viewport};
 use tercet::query::SweepTest;
 use tercet::query::gpu::{BatchMesh, IndirectBatch, IndirectConfig, IndirectCuller, IndirectStats};
-use tercet::scene::{Batch, ObjectSet, Scene, SceneConfig, Traits};
+use tercet::scene::{Batch, ObjectId, ObjectSet, Scene, SceneConfig, Traits};
+use tercet::tree::{NodeId, TreeConfig};
 use tercet::worlds::{self, Model, Pathology};
 
 use crate::indirect_renderer::Renderer;
@@ -14,6 +16,7 @@ use crate::support::{Gpu, depth_texture, gpus, read_buffer, read_depth, targets}
 
 const SCREEN: Viewport = Viewport::new(96, 54);
 const FRAMES: u32 = 12;
+const TESTS: [SweepTest; 3] = [SweepTest::HiZ, SweepTest::Raster, SweepTest::Rays];
 
 /// What a run came to, over all frames.
 #[derive(Clone, Copy, Debug, Default)]
@@ -87,7 +90,7 @@ pub fn run(
     outcome: &mut Outcome,
 ) {
     let mut stage = Stage::new(model, seed, SCREEN, true);
-    let mut scene = Scene::new(SceneConfig::default());
+    let mut scene = Scene::new(fine());
     let mut renderer = Renderer::new(gpu);
     for frame in 0..FRAMES {
         let view = stage.next(frame);
@@ -134,6 +137,12 @@ fn view(gpu: &Gpu, config: IndirectConfig) -> IndirectCuller {
     IndirectCuller::new(&gpu.device, &gpu.queue, config).expect("a view")
 }
 
+/// A tree of some depth: small leaves from the beginning.
+fn fine() -> SceneConfig {
+    let tree = TreeConfig { bulk_leaf: 2, unasked_leaf: 2, ..TreeConfig::stable() };
+    SceneConfig { tree, ..SceneConfig::default() }
+}
+
 fn config(test: SweepTest) -> IndirectConfig {
     IndirectConfig { test, ..IndirectConfig::default() }
 }
@@ -141,8 +150,9 @@ fn config(test: SweepTest) -> IndirectConfig {
 #[test]
 fn random_worlds() {
     for gpu in gpus() {
-        for test in [SweepTest::HiZ, SweepTest::Raster] {
-            for &samples in gpu.sample_counts() {
+        let mut by_raster = Vec::new();
+        for test in TESTS {
+            for (i, &samples) in gpu.sample_counts().iter().enumerate() {
                 let mut eye = view(&gpu, config(test));
                 let mut all = Outcome::default();
                 for seed in 0..3 {
@@ -156,6 +166,11 @@ fn random_worlds() {
                 assert!(all.hidden.min(all.visible) > 300, "there are things to hide: {all:?}");
                 assert!(all.culled * 3 > all.hidden, "{what} culled little: {all:?}");
                 assert!(all.drawn.iter().all(|&drawn| drawn > 0), "{what}: {all:?}");
+                match test {
+                    SweepTest::Raster => by_raster.push(all.drawn),
+                    SweepTest::Rays => assert_eq!(all.drawn, by_raster[i], "{what}: not what rasters find"),
+                    _ => {}
+                }
             }
         }
     }
@@ -166,13 +181,16 @@ fn random_worlds() {
 fn pathological_worlds() {
     for gpu in gpus() {
         let mut all = Outcome::default();
-        let tests = [SweepTest::HiZ, SweepTest::Raster];
-        let mut eyes = tests.map(|test| view(&gpu, config(test)));
+        let mut eyes = TESTS.map(|test| view(&gpu, config(test)));
         for (kind, seed) in Pathology::ALL.into_iter().zip(0..) {
-            for (&samples, eye) in gpu.sample_counts().iter().zip(&mut eyes) {
-                let target = (DepthFormat::Depth32Float, samples);
-                run(&gpu, eye, (worlds::pathological(kind), seed), target, &mut all);
-                assert_eq!((all.lost, all.wrong, all.disorder), (0, 0, 0), "{kind:?}: {all:?}");
+            // Rays with each number of samples, the others with one.
+            let [others @ .., rays] = &mut eyes;
+            for (&samples, other) in gpu.sample_counts().iter().zip(others) {
+                for eye in [other, &mut *rays] {
+                    let target = (DepthFormat::Depth32Float, samples);
+                    run(&gpu, eye, (worlds::pathological(kind), seed), target, &mut all);
+                    assert_eq!((all.lost, all.wrong, all.disorder), (0, 0, 0), "{kind:?}: {all:?}");
+                }
             }
         }
         println!("{:?}: {all:?}", gpu.backend);
@@ -183,20 +201,20 @@ fn pathological_worlds() {
 /// What the lists of some frames should hold, and what they hold: nothing is drawn, so what lies in
 /// view is visible, and what lies behind the eye is not. Returns how many lists are wrong.
 pub fn wrong_lists(gpu: &Gpu, config: IndirectConfig, count: usize) -> usize {
-    let mut scene = Scene::new(SceneConfig::default());
+    let mut scene = Scene::new(fine());
     let z = |i: usize| if i * i % 7 < 4 { -5.0 } else { 5.0 };
     for i in 0..count {
-        let place = glam::Vec3::new((i % 50) as f32 * 0.1 - 2.5, (i / 50 % 30) as f32 * 0.1 - 1.5, z(i));
+        let place = Vec3::new((i % 50) as f32 * 0.1 - 2.5, (i / 50 % 30) as f32 * 0.1 - 1.5, z(i));
         let traits = Traits { not_occluder: i % 11 == 3, ..traits((i * 5 % 13 % 4) as u32) };
-        scene.insert(Aabb::from_center(place, glam::Vec3::splat(0.2)), traits);
+        scene.insert(Aabb::from_center(place, Vec3::splat(0.2)), traits);
     }
     scene.update();
     let mut eye = view(gpu, config);
     let mut wrong = 0;
     let mut before = ObjectSet::default();
-    for toward in [-1.0, -1.0, 1.0, -1.0] {
-        let target = glam::Vec3::Z * toward;
-        let view = View::look_at(glam::Vec3::ZERO, target, 90.0, 0.1, SCREEN).expect("a view");
+    for toward in [-1.0, -1.0, -1.0, 1.0, -1.0] {
+        let target = Vec3::Z * toward;
+        let view = View::look_at(Vec3::ZERO, target, 90.0, 0.1, SCREEN).expect("a view");
         let depth = depth_texture(gpu, &view);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut calls = Vec::new();
@@ -239,12 +257,57 @@ pub fn wrong_lists(gpu: &Gpu, config: IndirectConfig, count: usize) -> usize {
     wrong
 }
 
+/// How often the groups and the loose objects are not those that the tree says: boxes that do not hide
+/// each other, of which some come into view from frame to frame, behind a few that are drawn first.
+pub fn wrong_groups(gpu: &Gpu, config: IndirectConfig) -> usize {
+    // Nothing is too large, and nothing lies outside or between the samples.
+    let mut eye = view(gpu, IndirectConfig { counters: true, share: 1.0, ..config });
+    let mut scene = Scene::new(fine());
+    let at = |i: usize| Vec3::new((i % 19) as f32 - 9.0, (i / 19 % 7) as f32 - 3.0, (i % 5) as f32);
+    // What hides nothing is never drawn first.
+    let traits = |i: usize| Traits { not_occluder: !(i / 40).is_multiple_of(3), ..traits(0) };
+    let ids: Vec<_> =
+        (0..300).map(|i| scene.insert(Aabb::from_center(at(i), Vec3::splat(0.8)), traits(i))).collect();
+    scene.update();
+    let drawn = |i: usize| !traits(i).not_occluder;
+    let mut expected = [0; 2];
+    let tree = scene.tree();
+    let holds_drawn = |node: NodeId| {
+        let below = |id: &ObjectId| {
+            let own = tree.node_of(id.slot() as u32);
+            std::iter::successors(own, |&own| tree.parent(own)).any(|above| above == node)
+        };
+        ids.iter().enumerate().any(|(i, id)| drawn(i) && below(id))
+    };
+    for node in tree.nodes().filter(|node| node.below > 0) {
+        let is_visible = holds_drawn(node.id);
+        let hangs_off = tree.parent(node.id).is_some_and(holds_drawn);
+        expected[0] += u32::from(!is_visible && hangs_off);
+        expected[1] += if is_visible { node.own as u32 } else { 0 };
+    }
+    assert!(expected.iter().all(|&count| count > 10), "{expected:?}");
+    let mut found = Vec::new();
+    for _ in 0..9 {
+        found.push(frame(gpu, &mut eye, &scene, 1).expect("a frame").tested);
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a poll");
+    }
+    // In the first frame the root is the only group.
+    usize::from(!found.contains(&Some([1, 0]))) + usize::from(found.last() != Some(&Some(expected)))
+}
+
+#[test]
+fn groups_are_the_largest_subtrees_without_what_was_drawn_first() {
+    for gpu in gpus() {
+        assert_eq!(wrong_groups(&gpu, config(SweepTest::Rays)), 0, "{:?}", gpu.backend);
+    }
+}
+
 /// Lists in the order of slots, of few objects and of more than one step of the sum holds.
 #[test]
 fn lists_hold_what_is_visible_in_order() {
     for gpu in gpus() {
         for count in [1, 256, 1000, 70_000] {
-            for test in [SweepTest::HiZ, SweepTest::Raster] {
+            for test in TESTS {
                 assert_eq!(wrong_lists(&gpu, config(test), count), 0, "{:?}, {count}, {test:?}", gpu.backend);
             }
         }
@@ -253,7 +316,7 @@ fn lists_hold_what_is_visible_in_order() {
 
 /// A frame of a scene of plain boxes, without anything drawn.
 fn frame(gpu: &Gpu, eye: &mut IndirectCuller, scene: &Scene, meshes: usize) -> Result<IndirectStats, Error> {
-    let view = View::look_at(glam::Vec3::Z * 50.0, glam::Vec3::ZERO, 60.0, 0.1, SCREEN).expect("a view");
+    let view = View::look_at(Vec3::Z * 50.0, Vec3::ZERO, 60.0, 0.1, SCREEN).expect("a view");
     let depth = depth_texture(gpu, &view);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let meshes = vec![BatchMesh::default(); meshes];
@@ -271,8 +334,8 @@ fn only_what_has_changed_is_uploaded() {
     for gpu in gpus() {
         let mut scene = Scene::new(SceneConfig::default());
         let at = |i: usize, y: f32| {
-            let place = glam::Vec3::new((i % 40) as f32 - 20.0, y, (i / 40) as f32 - 20.0);
-            Aabb::from_center(place, glam::Vec3::splat(0.3))
+            let place = Vec3::new((i % 40) as f32 - 20.0, y, (i / 40) as f32 - 20.0);
+            Aabb::from_center(place, Vec3::splat(0.3))
         };
         let ids: Vec<_> = (0..1600).map(|i| scene.insert(at(i, 0.0), traits(i as u32 % 3))).collect();
         scene.update();
@@ -297,7 +360,7 @@ fn an_object_without_a_mesh_is_an_error() {
         for wrong in [Traits::default(), traits(2)] {
             let mut scene = Scene::new(SceneConfig::default());
             frame(&gpu, &mut eye, &scene, 2).expect("an empty scene is a frame");
-            scene.insert(Aabb::from_center(glam::Vec3::ZERO, glam::Vec3::ONE), wrong);
+            scene.insert(Aabb::from_center(Vec3::ZERO, Vec3::ONE), wrong);
             assert!(matches!(frame(&gpu, &mut eye, &scene, 2), Err(Error::PendingEdits(_))));
             scene.update();
             let error = frame(&gpu, &mut eye, &scene, 2);
@@ -312,7 +375,7 @@ fn counters_come_back_on_demand() {
     for gpu in gpus() {
         let mut scene = Scene::new(SceneConfig::default());
         let mut insert = |x: f32, traits| {
-            scene.insert(Aabb::from_center(glam::Vec3::X * x, glam::Vec3::ONE), traits);
+            scene.insert(Aabb::from_center(Vec3::X * x, Vec3::ONE), traits);
         };
         (0..5).for_each(|i| insert(3.0 * i as f32 - 6.0, traits(i % 2)));
         insert(20.0, Traits { not_occluder: true, ..traits(0) });

@@ -34,6 +34,11 @@ impl Gpu {
 /// A device, without optional features, on each adapter that there is; `WGPU_BACKEND` chooses among
 /// them. Without any the test passes, aloud, unless `TERCET_REQUIRE_GPU` is 1.
 pub fn gpus() -> Vec<Gpu> {
+    gpus_with(wgpu::Limits::default())
+}
+
+/// The same with other limits.
+pub fn gpus_with(limits: wgpu::Limits) -> Vec<Gpu> {
     let backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY | wgpu::Backends::GL);
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
@@ -43,6 +48,7 @@ pub fn gpus() -> Vec<Gpu> {
         .map(|adapter| {
             let descriptor = wgpu::DeviceDescriptor {
                 required_features: GpuQueries::wanted_features(adapter),
+                required_limits: limits.clone(),
                 ..Default::default()
             };
             let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("a device");

@@ -1,6 +1,6 @@
 //! Sweeps, stage by stage against their twins on the CPU: proxies made on the device against
-//! geometry and against the normative ones, the pyramid against a fold of the depth, and each test
-//! against a plain loop over the device's own proxies.
+//! geometry and against the normative ones, the pyramid against a fold of the depth, each test
+//! against a plain loop over the device's own proxies, and rays against rasters.
 
 use glam::Vec4;
 use rand::{RngExt, SeedableRng};
@@ -9,9 +9,10 @@ use tercet::geom::{Frustum, PixelRect, Proxy, Question, View};
 use tercet::query::gpu::{GpuConfig, GpuQueries, Level};
 use tercet::query::{Answer, QueryBackend, Sweep, SweepTest, Ticket, Wait};
 use tercet::scene::{ObjectId, ObjectSet, Scene, SceneConfig, Traits};
+use tercet::tree::{NodeId, TreeConfig};
 
 use crate::geometry::{Case, Sample, random_case};
-use crate::support::{Gpu, Nearness, clip, depth_of, gpus, targets};
+use crate::support::{Gpu, Nearness, clip, depth_of, gpus, gpus_with, targets};
 use crate::twin::{Convention, conventions, occluders, plain_any, view_of};
 
 /// What a comparison met.
@@ -30,8 +31,12 @@ pub struct Tally {
     fewer: usize,
     /// Objects that only the device's proxy shows.
     pub more: usize,
-    /// What is outside the bounds, a stage: proxies, pyramid, raster, Hi-Z.
-    pub faults: [usize; 4],
+    /// Groups that rays were cast into.
+    groups: u64,
+    /// What was found in and beside them, and what was not.
+    by_rays: [usize; 2],
+    /// What is outside the bounds, a stage: proxies, pyramid, raster, Hi-Z, rays.
+    pub faults: [usize; 5],
 }
 
 /// A backend that is compared.
@@ -50,7 +55,9 @@ struct Boxes {
 
 impl Boxes {
     fn new(cases: Vec<Case>) -> Self {
-        let mut scene = Scene::new(SceneConfig::default());
+        // A tree of some depth: small leaves from the beginning.
+        let tree = TreeConfig { bulk_leaf: 2, unasked_leaf: 2, ..TreeConfig::stable() };
+        let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
         let ids = cases.iter().map(|case| scene.insert(case.world, Traits::default())).collect();
         scene.update();
         Self { scene, cases, ids }
@@ -58,6 +65,20 @@ impl Boxes {
 
     fn random(dice: &mut ChaCha8Rng, view: &View, count: usize) -> Self {
         Self::new((0..count).map(|_| random_case(dice, |_| view.clone())).collect())
+    }
+
+    /// Some nodes, none below another, and some objects.
+    fn targets(&self, dice: &mut ChaCha8Rng) -> (Vec<NodeId>, Vec<ObjectId>) {
+        let tree = self.scene.tree();
+        let (mut groups, mut stack) = (Vec::new(), vec![tree.root()]);
+        while let Some(node) = stack.pop() {
+            match (tree.children(node), dice.random_range(0..6)) {
+                (Some(children), 0..3) => stack.extend(children),
+                (_, 3) => {}
+                _ => groups.push(node),
+            }
+        }
+        (groups, self.ids.iter().copied().filter(|_| dice.random_bool(0.1)).collect())
     }
 }
 
@@ -118,6 +139,16 @@ impl<'g> Twin<'g> {
             self.tally.fewer += usize::from(seen && !raster.contains(*id));
             self.tally.more += usize::from(!seen && raster.contains(*id));
         }
+        for _ in 0..2 {
+            let (groups, loose) = boxes.targets(dice);
+            let of = |test| Sweep { groups: &groups, loose: &loose, ..of(test) };
+            let raster = sweep(&mut self.queries, &of(SweepTest::Raster));
+            let rays = sweep(&mut self.queries, &of(SweepTest::Rays));
+            self.tally.faults[4] += usize::from(!raster.slots().eq(rays.slots()));
+            let [found, others] = &mut self.tally.by_rays;
+            (*found, *others) = (*found + rays.len(), *others + boxes.ids.len() - rays.len());
+        }
+        self.tally.groups += self.queries.stats().groups;
         self.queries.end().expect("end");
     }
 
@@ -268,10 +299,46 @@ fn stages_equal_their_twins() {
             }
             let tally = twin.tally;
             println!("{:?}, {convention:?}: {tally:?}", gpu.backend);
-            assert_eq!(tally.faults, [0; 4], "{:?}, {convention:?}: {tally:?}", gpu.backend);
+            assert_eq!(tally.faults, [0; 5], "{:?}, {convention:?}: {tally:?}", gpu.backend);
             assert!(tally.samples > 2500 && tally.seen.min(tally.hidden) > 100, "{tally:?}");
             assert!(tally.fewer == 0 && tally.more * 4 < tally.hidden, "{tally:?}");
             assert!(tally.loose * 2 < tally.hidden, "{tally:?}");
+            assert!(tally.groups > 40 && tally.by_rays.iter().all(|&count| count > 200), "{tally:?}");
+        }
+    }
+}
+
+/// A device that binds few bytes: what it cannot hold of the tree is tested as by rasters.
+#[test]
+fn where_the_tree_does_not_fit_rasters_answer() {
+    let limits = wgpu::Limits { max_storage_buffer_binding_size: 1 << 16, ..wgpu::Limits::default() };
+    for gpu in gpus_with(limits) {
+        let mut queries = gpu.exact_queries(GpuConfig::default());
+        let mut dice = ChaCha8Rng::seed_from_u64(5);
+        let view = small_view(&mut dice, conventions(&gpu)[0]);
+        for (count, fits) in [(200, true), (1000, false)] {
+            let boxes = Boxes::random(&mut dice, &view, count);
+            let (depth, _) = depth_of(&gpu, &mut queries, &view, &[]);
+            queries.target(&targets(&depth, true));
+            queries.begin(&view).expect("begin");
+            let frustum = Frustum::new(&view);
+            let tree = boxes.scene.tree();
+            // Its objects fit, all of the tree's may not.
+            let group = tree.nodes().find(|node| (10..100).contains(&node.below)).expect("a small node").id;
+            let groups = [group];
+            let of = |test| Sweep {
+                scene: &boxes.scene,
+                view: &view,
+                frustum: &frustum,
+                groups: &groups,
+                loose: &[],
+                test,
+            };
+            let raster = sweep(&mut queries, &of(SweepTest::Raster));
+            let rays = sweep(&mut queries, &of(SweepTest::Rays));
+            assert!(raster.slots().eq(rays.slots()));
+            assert_eq!(queries.stats().groups, u64::from(fits), "{:?}, {count} objects", gpu.backend);
+            queries.end().expect("end");
         }
     }
 }

@@ -6,9 +6,10 @@ use std::borrow::Cow;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tercet::query::SweepTest;
-use tercet::query::gpu::{GpuConfig, IndirectConfig, Shaders};
+use tercet::query::gpu::{GpuConfig, GpuQueries, IndirectConfig, Shader, Shaders};
 
-use crate::indirect::wrong_lists;
+use crate::indirect::{wrong_groups, wrong_lists};
+use crate::owners;
 use crate::support::{gpus, skip};
 use crate::sweep::Twin;
 use crate::twin::conventions;
@@ -36,8 +37,11 @@ fn wrong_sweeps_are_found_out() {
         ("select(SEEN, OUTSIDE, is_beside", "select(OUTSIDE, OUTSIDE, is_beside"),
         ("vec2<f32>(half.x, -half.y)", "half"),
         ("nearest = max(nearest, nearness)", "nearest = min(nearest, nearness)"),
-        ("floor(screen.high + screen.reach - 0.5) + 1.0", "floor(screen.high + screen.reach - 0.5)"),
-        ("ceil(screen.low - screen.reach - 0.5)", "ceil(screen.low - screen.reach + 0.5)"),
+        (
+            "floor((*screen).high + (*screen).reach - 0.5) + 1.0",
+            "floor((*screen).high + (*screen).reach - 0.5)",
+        ),
+        ("ceil((*screen).low - (*screen).reach - 0.5)", "ceil((*screen).low - (*screen).reach + 0.5)"),
         ("snapped + moved + view.within_pixel", "-snapped - moved"),
         ("f.z += dot(abs(edge.slope), reach) + rounding", "f.z -= 1.0"),
         ("vec3<f32>(edge.slope, -edge.low)", "vec3<f32>(edge.slope, -edge.high)"),
@@ -53,6 +57,32 @@ fn wrong_sweeps_are_found_out() {
         ("rect.x, rect.z", "rect.x + 1u, rect.z"),
         ("if covers(&proxy, d) && ", "if "),
         ("atomicStore(&verdicts[i], SEEN)", "atomicStore(&verdicts[i / 2u], SEEN)"),
+    ];
+    const RAYS: &[Mutation] = &[
+        ("all(pixel < rect.zw)", "all(pixel + 1u < rect.zw)"),
+        ("entry(&proxy, d) >= stored", "entry(&proxy, d) > stored + 0.01"),
+        ("return covers(&proxy, d) && ", "return "),
+        ("node.nearest < stored", "node.nearest > stored"),
+        ("place < node.end", "place + 1u < node.end"),
+        ("at = node.skip;", "at = end;"),
+        ("at = node.enter;", "at = node.skip;"),
+        ("at != end", "at == corner.index"),
+        ("== HIDDEN && meets", "!= HIDDEN && meets"),
+        ("frame.origin + pixel", "pixel"),
+    ];
+    const ENCLOSE: &[Mutation] = &[
+        ("verdict == SEEN {\n        rect = vec4<f32>(vec2<f32>(0.0), view.size);", "verdict == SEEN {"),
+        ("Room(3.0, 100.0)", "Room(-3.0, 100.0)"),
+        ("link.first, link.end", "link.first, link.first"),
+        ("link.enter, link.skip", "link.skip, link.skip"),
+        ("boxes[i]", "boxes[i / 2u]"),
+        ("max(screen.nearest + screen.depth_error, view.cleared)", "view.cleared"),
+        ("(box.kind & BOXED) != 0u", "(box.kind & BOXED) == 0u"),
+    ];
+    const ENLIST: &[Mutation] = &[
+        ("if i < arrayLength(&groups)", "if i + 1u < arrayLength(&groups)"),
+        ("nodes[groups[i]].rect, groups[i]", "nodes[groups[0]].rect, groups[i]"),
+        ("nodes[groups[i]].rect, groups[i]", "nodes[groups[i]].rect, i"),
     ];
     const PYRAMID: &[Mutation] = &[
         ("min(pixel + 1u, frame.size - 1u)", "pixel"),
@@ -76,13 +106,16 @@ fn wrong_sweeps_are_found_out() {
         return skip("no adapter has several samples a pixel that can be read");
     };
     // Seldom does the farthest of four texels alone decide.
-    let passes: [(Sources, &[Mutation], usize); 4] = [
+    let passes: [(Sources, &[Mutation], usize); 7] = [
         (|shaders| vec![&mut shaders.project], PROJECT, 24),
         (
             |shaders| vec![&mut shaders.sweep_raster.single, &mut shaders.sweep_raster.multisampled],
             RASTER,
             24,
         ),
+        (|shaders| vec![&mut shaders.sweep_rays.single, &mut shaders.sweep_rays.multisampled], RAYS, 24),
+        (|shaders| vec![&mut shaders.enclose], ENCLOSE, 24),
+        (|shaders| vec![&mut shaders.enlist], ENLIST, 24),
         (
             |shaders| vec![&mut shaders.build_pyramid.single, &mut shaders.build_pyramid.multisampled],
             PYRAMID,
@@ -97,12 +130,12 @@ fn wrong_sweeps_are_found_out() {
             let mut twin = Twin::new(&gpu, GpuConfig { shaders, ..GpuConfig::default() });
             let mut dice = ChaCha8Rng::seed_from_u64(13);
             for convention in conventions(&gpu).into_iter().cycle().take(rounds) {
-                if twin.tally.faults == [0; 4] {
+                if twin.tally.faults == [0; 5] {
                     twin.round(&mut dice, convention);
                 }
             }
             // Proxies may also be too large.
-            if twin.tally.faults == [0; 4] && twin.tally.more * 3 < twin.tally.hidden {
+            if twin.tally.faults == [0; 5] && twin.tally.more * 3 < twin.tally.hidden {
                 unnoticed.push((mutation, twin.tally));
             }
         }
@@ -132,15 +165,89 @@ fn wrong_lists_are_found_out() {
         ("mesh.first_index, mesh", "mesh.index_count, mesh"),
     ];
     let Some(gpu) = gpus().into_iter().next() else { return };
-    let passes: [(Sources, &[Mutation]); 2] =
-        [(|shaders| vec![&mut shaders.select], SELECT), (|shaders| vec![&mut shaders.compact], COMPACT)];
-    for (sources, mutations) in passes {
+    const MARK: &[Mutation] = &[
+        ("atomicMax(&marks[child], UNKNOWN)", "atomicMax(&marks[child], 0u)"),
+        ("child = nodes[child].skip", "child = nodes[at].skip"),
+    ];
+    const EXTRACT: &[Mutation] = &[
+        ("if mark == VISIBLE {", "if mark == 9u {"),
+        ("select(0u, UNKNOWN, i == 0u)", "0u"),
+        ("at = node.enter;", "at = node.skip;"),
+        ("Listed(rect, place)", "Listed(rect, place / 2u)"),
+        ("place < node.end", "place + 1u < node.end"),
+        ("atomicAdd(&draws[5], 1u)", "atomicAdd(&draws[4], 1u)"),
+        ("atomicAdd(&draws[1], 1u)", "atomicAdd(&draws[0], 1u)"),
+    ];
+    const SPREAD: &[Mutation] = &[
+        ("found[places[i]]", "found[i]"),
+        ("if i < arrayLength(&verdicts)", "if i + 1u < arrayLength(&verdicts)"),
+    ];
+    let passes: [(Sources, &[Mutation], SweepTest); 5] = [
+        (|shaders| vec![&mut shaders.select], SELECT, SweepTest::Raster),
+        (|shaders| vec![&mut shaders.compact], COMPACT, SweepTest::Raster),
+        (|shaders| vec![&mut shaders.mark], MARK, SweepTest::Rays),
+        (|shaders| vec![&mut shaders.extract], EXTRACT, SweepTest::Rays),
+        (|shaders| vec![&mut shaders.spread], SPREAD, SweepTest::Rays),
+    ];
+    for (sources, mutations, test) in passes {
         for &mutation in mutations {
             let shaders = mutated(sources, mutation);
-            let config = IndirectConfig { shaders, test: SweepTest::Raster, ..IndirectConfig::default() };
+            let config = IndirectConfig { shaders, test, ..IndirectConfig::default() };
             // What is carried from one step of the sum to the next shows only with many objects.
             let count = if mutation.0.starts_with("carried") { 140_000 } else { 1000 };
             assert!(wrong_lists(&gpu, config, count) > 0, "{mutation:?} was not found out");
         }
+    }
+}
+
+#[test]
+fn wrong_groups_are_found_out() {
+    const MARK: &[Mutation] = &[
+        ("& DRAWN) != 0u", "& DRAWN) == 0u"),
+        ("at = nodes[at].parent;", "at = NONE;"),
+        ("place < node.end", "place + 1u < node.end"),
+    ];
+    const EXTRACT: &[Mutation] = &[
+        ("size.x * size.y > most.x", "size.x * size.y >= 0.0"),
+        ("node.verdict == SEEN", "node.verdict != SEEN"),
+        ("if mark != UNKNOWN {", "if mark == 9u {"),
+    ];
+    let Some(gpu) = gpus().into_iter().next() else { return };
+    let passes: [(Sources, &[Mutation]); 2] =
+        [(|shaders| vec![&mut shaders.mark], MARK), (|shaders| vec![&mut shaders.extract], EXTRACT)];
+    for (sources, mutations) in passes {
+        for &mutation in mutations {
+            let config = IndirectConfig {
+                shaders: mutated(sources, mutation),
+                test: SweepTest::Rays,
+                ..IndirectConfig::default()
+            };
+            assert!(wrong_groups(&gpu, config) > 0, "{mutation:?} was not found out");
+        }
+    }
+}
+
+#[test]
+fn wrong_owners_are_found_out() {
+    const OWNERS: &[Mutation] = &[
+        ("verdicts[id - 1u], SEEN", "verdicts[id], SEEN"),
+        ("sample < frame.samples", "sample + 1u < frame.samples"),
+        ("i32(sample)", "0"),
+        ("any(at.xy >= frame.size)", "any(at.xy >= frame.size / 2u)"),
+        ("id != 0u && id <=", "id != 0u && id + 2u <="),
+    ];
+    let Some(gpu) = gpus().into_iter().find(|gpu| gpu.sample_counts().len() > 1) else {
+        return skip("no adapter has several samples a pixel that can be read");
+    };
+    for &mutation in OWNERS {
+        let mut shaders = Shaders::default();
+        let Shader { single, multisampled } = &mut shaders.sweep_owners;
+        for source in [single, multisampled] {
+            *source = Cow::Owned(source.replace(mutation.0, mutation.1));
+        }
+        let config = GpuConfig { shaders, ..GpuConfig::default() };
+        let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
+        let wrong = (0..4).any(|seed| owners::run(&gpu, &mut queries, seed, 4).wrong > 0);
+        assert!(wrong, "{mutation:?} was not found out");
     }
 }

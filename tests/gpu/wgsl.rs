@@ -20,11 +20,15 @@ fn sources() -> Vec<(String, Capabilities)> {
             (shaders.source(counting, several).to_owned(), needs)
         }));
         all.push((shaders.gather_blocks_source(several).to_owned(), Capabilities::empty()));
-        for shader in [&shaders.sweep_raster, &shaders.build_pyramid, &shaders.sweep_hi_z] {
+        let Shaders { sweep_raster, sweep_rays, sweep_owners, build_pyramid, sweep_hi_z, .. } = &shaders;
+        let sweeps = [sweep_raster, sweep_rays, sweep_owners, build_pyramid, sweep_hi_z];
+        for shader in sweeps {
             all.push((shader.source(several).to_owned(), Capabilities::empty()));
         }
     }
-    for source in [shaders.ask_natively, shaders.project, shaders.select, shaders.compact] {
+    let Shaders { ask_natively, project, enclose, enlist, .. } = shaders;
+    let Shaders { mark, extract, spread, select, compact, .. } = Shaders::default();
+    for source in [ask_natively, project, enclose, enlist, mark, extract, spread, select, compact] {
         all.push((source.into_owned(), Capabilities::empty()));
     }
     all
@@ -65,9 +69,9 @@ fn shaders_are_valid_and_portable() {
         }
     }
     assert_eq!(
-        entries, 30,
-        "twice each: two vertex, two fragment and seven compute stages; two of native queries, and six \
-         more that read no depth"
+        entries, 43,
+        "twice each: four vertex, three fragment and eight compute stages; two of native queries, and \
+         eleven more that read no depth"
     );
 }
 

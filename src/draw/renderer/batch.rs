@@ -28,13 +28,25 @@ impl Instance {
 /// to call.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
-    staged: Vec<(u32, Instance)>,
+    staged: Vec<(u32, Instance, u32)>,
     /// By group: how many are staged, and while sorting, where the next one goes.
     counts: Vec<u32>,
     /// The groups with staged instances, in the order in which they came.
     groups: Vec<u32>,
     sorted: Vec<Instance>,
+    ids: Vec<u32>,
     runs: Vec<Run>,
+}
+
+/// What a call draws, in the order of the draws.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sorted<'a> {
+    /// Each group's instances together and in their order, and the groups in the order of their first
+    /// instance.
+    pub(super) instances: &'a [Instance],
+    /// Whose they are.
+    pub(super) ids: &'a [u32],
+    pub(super) runs: &'a [Run],
 }
 
 /// Instances of one group.
@@ -50,7 +62,7 @@ impl Batch {
         self.staged.len()
     }
 
-    pub(super) fn push(&mut self, group: u32, instance: Instance) {
+    pub(super) fn push(&mut self, group: u32, instance: Instance, id: u32) {
         let index = group as usize;
         if self.counts.len() <= index {
             self.counts.resize(index + 1, 0);
@@ -59,12 +71,11 @@ impl Batch {
             self.groups.push(group);
         }
         self.counts[index] += 1;
-        self.staged.push((group, instance));
+        self.staged.push((group, instance, id));
     }
 
-    /// All that was pushed, each group's instances together and in their order, and the groups in
-    /// the order of their first instance. Starts anew. O(instances).
-    pub(super) fn sort(&mut self) -> (&[Instance], &[Run]) {
+    /// All that was pushed, sorted. Starts anew. O(instances).
+    pub(super) fn sort(&mut self) -> Sorted<'_> {
         self.runs.clear();
         let mut first = 0;
         for group in self.groups.drain(..) {
@@ -73,13 +84,14 @@ impl Batch {
             first += std::mem::replace(next, first);
         }
         self.sorted.resize(self.staged.len(), Instance::zeroed());
-        for (group, instance) in self.staged.drain(..) {
+        self.ids.resize(self.staged.len(), 0);
+        for (group, instance, id) in self.staged.drain(..) {
             let next = &mut self.counts[group as usize];
-            self.sorted[*next as usize] = instance;
+            (self.sorted[*next as usize], self.ids[*next as usize]) = (instance, id);
             *next += 1;
         }
         self.runs.iter().for_each(|run| self.counts[run.group as usize] = 0);
-        (&self.sorted, &self.runs)
+        Sorted { instances: &self.sorted, ids: &self.ids, runs: &self.runs }
     }
 }
 
@@ -97,16 +109,17 @@ mod tests {
     fn instances_are_grouped_in_the_order_in_which_they_came() {
         let mut batch = Batch::default();
         for _ in 0..2 {
-            for (group, x) in [(7, 0.0), (2, 1.0), (7, 2.0), (0, 3.0), (2, 4.0), (7, 5.0)] {
-                batch.push(group, at(x));
+            for (group, x) in [(7, 0u8), (2, 1), (7, 2), (0, 3), (2, 4), (7, 5)] {
+                batch.push(group, at(x.into()), u32::from(x) + 10);
             }
             assert_eq!(batch.len(), 6);
-            let (sorted, runs) = batch.sort();
-            assert_eq!(sorted, [0.0, 2.0, 5.0, 1.0, 4.0, 3.0].map(at));
+            let Sorted { instances, ids, runs } = batch.sort();
+            assert_eq!(ids, [10, 12, 15, 11, 14, 13]);
+            assert_eq!(instances, [0.0, 2.0, 5.0, 1.0, 4.0, 3.0].map(at));
             let runs: Vec<_> = runs.iter().map(|run| (run.group, run.instances.clone())).collect();
             assert_eq!(runs, [(7, 0..3), (2, 3..5), (0, 5..6)]);
         }
-        assert_eq!(batch.sort(), (&[] as &[Instance], &[] as &[Run]));
+        assert_eq!(batch.sort(), Sorted { instances: &[], ids: &[], runs: &[] });
     }
 
     #[test]

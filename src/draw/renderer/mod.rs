@@ -74,7 +74,7 @@ use crate::geom::View;
 use crate::scene::ObjectRef;
 use crate::scene::mesh::Mesh;
 use arena::Arena;
-use batch::{Batch, Instance};
+use batch::{Batch, Instance, Sorted};
 use camera::PackedCamera;
 use geometry::Geometry;
 use pipelines::{Kind, Pipelines};
@@ -122,12 +122,13 @@ pub struct RendererStats {
 ///
 /// Its depth is Depth32Float or Depth24Plus without stencil, as the view says, and so are sample
 /// count and direction of depth. Passes need one colour attachment of the format that it was made
-/// for, or none.
+/// for, or none; with ids, a second one.
 #[derive(Debug)]
 pub struct Renderer {
     device: Device,
     queue: Queue,
     color: Option<TextureFormat>,
+    has_ids: bool,
     pipelines: Pipelines,
     uniforms: Buffer,
     bindings: BindGroup,
@@ -154,6 +155,9 @@ struct Frame {
 const MOST: usize = 1 << 20;
 
 impl Renderer {
+    /// The format of item buffers: see [`Renderer::with_ids`].
+    pub const IDS: TextureFormat = TextureFormat::Rg16Uint;
+
     /// A renderer on the app's device, whose handles it clones. Without a colour format it draws
     /// depth alone: shadow maps.
     ///
@@ -161,10 +165,30 @@ impl Renderer {
     /// [`Error::Target`] for a format that is no colour with at least three channels, or that
     /// cannot be drawn to and blended.
     pub fn new(device: &Device, queue: &Queue, color: Option<TextureFormat>) -> Result<Self, Error> {
+        Self::made(device, queue, color, false)
+    }
+
+    /// The same with an item buffer, which says who owns each sample: a second colour attachment, of the
+    /// format [`Renderer::IDS`], as
+    /// [`GpuQueries::target_ids`](crate::query::gpu::GpuQueries::target_ids) wants it. All surfaces of a
+    /// call are drawn once more for it, with their depth alone.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_ids(device: &Device, queue: &Queue, color: Option<TextureFormat>) -> Result<Self, Error> {
+        Self::made(device, queue, color, true)
+    }
+
+    fn made(
+        device: &Device,
+        queue: &Queue,
+        color: Option<TextureFormat>,
+        has_ids: bool,
+    ) -> Result<Self, Error> {
         if let Some(format) = color {
             check(format, device)?;
         }
-        let pipelines = Pipelines::new(device, color);
+        let pipelines = Pipelines::new(device, color, has_ids);
         let uniforms = device.create_buffer(&BufferDescriptor {
             label: Some("tercet camera"),
             size: size_of::<PackedCamera>() as u64,
@@ -175,6 +199,7 @@ impl Renderer {
             device: device.clone(),
             queue: queue.clone(),
             color,
+            has_ids,
             bindings: pipelines.bind(device, &uniforms),
             pipelines,
             uniforms,
@@ -269,7 +294,7 @@ impl Renderer {
                 continue;
             }
             let color = tinted(*color, tint).map(|c| self.linear[usize::from(c)]);
-            self.batch.push(group, Instance::new(world_from_object, color));
+            self.batch.push(group, Instance::new(world_from_object, color), object.id.slot() as u32 + 1);
             if self.batch.len() == MOST {
                 drawn += self.draw_batch(pass, &frame);
             }
@@ -282,13 +307,17 @@ impl Renderer {
 
     fn draw_batch(&mut self, pass: &mut RenderPass<'static>, frame: &Frame) -> Drawn {
         let mut drawn = Drawn::default();
-        let (instances, runs) = self.batch.sort();
+        let Sorted { instances, ids, runs } = self.batch.sort();
         if instances.is_empty() {
             return drawn;
         }
         let bytes = cast_slice(instances);
         let (buffer, offset) = self.arena.write(&self.device, &self.queue, bytes);
         self.uploaded += bytes.len() as u64;
+        let ids = self.has_ids.then(|| {
+            self.uploaded += size_of_val(ids) as u64;
+            self.arena.write(&self.device, &self.queue, cast_slice(ids))
+        });
         drawn.instances = instances.len() as u64;
         for run in runs {
             let triangles = u64::from(self.geometry.group(run.group).index_count / 3);
@@ -302,7 +331,7 @@ impl Renderer {
             (Shading::Unlit, _) => &[Kind::Unlit],
             (Shading::Overdraw, _) => &[Kind::Depth, Kind::Layers],
         };
-        for &kind in kinds {
+        for &kind in kinds.iter().chain(self.has_ids.then_some(&Kind::Ids)) {
             if let Kind::LookUps(_) = kind {
                 pass.set_bind_group(1, self.pipelines.look_ups(&self.device, &self.queue), &[]);
             }
@@ -314,6 +343,10 @@ impl Renderer {
                 let first = offset + u64::from(run.instances.start) * size_of::<Instance>() as u64;
                 pass.set_vertex_buffer(0, group.vertices.slice(..));
                 pass.set_vertex_buffer(1, buffer.slice(first..));
+                if let (Kind::Ids, Some((ids, offset))) = (kind, &ids) {
+                    let first = offset + u64::from(run.instances.start) * size_of::<u32>() as u64;
+                    pass.set_vertex_buffer(2, ids.slice(first..));
+                }
                 pass.set_index_buffer(group.indices.slice(..), IndexFormat::Uint32);
                 pass.draw_indexed(0..group.index_count, 0, 0..run.instances.len() as u32);
                 drawn.draws += 1;

@@ -13,6 +13,7 @@ use wgpu::{
     VertexFormat, VertexState, VertexStepMode,
 };
 
+use super::Renderer;
 use super::batch::Instance;
 use super::look_ups::LookUps;
 use super::normals::Vertex;
@@ -43,6 +44,8 @@ pub(super) enum Kind {
     Unlit,
     /// Surfaces, into the depth alone.
     Depth,
+    /// Whose the nearest surfaces are, into the item buffer alone.
+    Ids,
     /// Every layer of surfaces, into the colour alone.
     Layers,
     /// Edges of boxes where nothing is nearer.
@@ -67,6 +70,7 @@ struct Key {
 #[derive(Debug)]
 pub(super) struct Pipelines {
     color: Option<TextureFormat>,
+    has_ids: bool,
     modules: [ShaderModule; 2],
     bindings: BindGroupLayout,
     layout: PipelineLayout,
@@ -76,7 +80,7 @@ pub(super) struct Pipelines {
 }
 
 impl Pipelines {
-    pub(super) fn new(device: &Device, color: Option<TextureFormat>) -> Self {
+    pub(super) fn new(device: &Device, color: Option<TextureFormat>, has_ids: bool) -> Self {
         let modules = SOURCES.map(|source| {
             device.create_shader_module(ShaderModuleDescriptor {
                 label: Some("tercet renderer"),
@@ -101,7 +105,7 @@ impl Pipelines {
             bind_group_layouts: &[Some(&bindings)],
             immediate_size: 0,
         });
-        Self { color, modules, bindings, layout, look_ups: None, made: HashMap::new() }
+        Self { color, has_ids, modules, bindings, layout, look_ups: None, made: HashMap::new() }
     }
 
     /// Binds the uniforms.
@@ -127,12 +131,12 @@ impl Pipelines {
             is_float: view.format() == DepthFormat::Depth32Float,
             samples: view.samples(),
         };
-        let Self { color, modules, layout, look_ups, made, .. } = self;
+        let Self { color, has_ids, modules, layout, look_ups, made, .. } = self;
         let layout = match (kind, look_ups) {
             (Kind::LookUps(_), Some(look_ups)) => &look_ups.layout,
             _ => layout,
         };
-        made.entry(key).or_insert_with(|| key.make(device, modules, layout, *color))
+        made.entry(key).or_insert_with(|| key.make(device, modules, layout, (*color, *has_ids)))
     }
 }
 
@@ -142,7 +146,7 @@ impl Key {
         device: &Device,
         [surfaces, overlays]: &[ShaderModule; 2],
         layout: &PipelineLayout,
-        color: Option<TextureFormat>,
+        (color, has_ids): (Option<TextureFormat>, bool),
     ) -> RenderPipeline {
         let Recipe { stages, buffers, topology, blend, draws_color, depth } = self.kind.recipe();
         let constants: Vec<(&str, f64)> = match self.kind {
@@ -150,13 +154,17 @@ impl Key {
             _ => Vec::new(),
         };
         let module = if self.kind.is_surface() { surfaces } else { overlays };
-        let write_mask = if draws_color { ColorWrites::ALL } else { ColorWrites::empty() };
-        let target = color.map(|format| [Some(ColorTargetState { format, blend, write_mask })]);
-        let fragment = target.as_ref().map(|targets| FragmentState {
+        let mask = |writes| if writes { ColorWrites::ALL } else { ColorWrites::empty() };
+        let write_mask = mask(draws_color);
+        let color = color.map(|format| ColorTargetState { format, blend, write_mask });
+        let write_mask = mask(self.kind == Kind::Ids);
+        let ids = ColorTargetState { format: Renderer::IDS, blend: None, write_mask };
+        let targets = if has_ids { vec![color, Some(ids)] } else { vec![color] };
+        let fragment = targets.iter().any(Option::is_some).then_some(FragmentState {
             module,
             entry_point: Some(stages[1]),
             compilation_options: PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets,
+            targets: &targets,
         });
         let buffers: Vec<_> = buffers.into_iter().map(Some).collect();
         device.create_render_pipeline(&RenderPipelineDescriptor {
@@ -209,7 +217,7 @@ enum Depth {
 
 impl Kind {
     fn is_surface(self) -> bool {
-        matches!(self, Self::Lit | Self::LookUps(_) | Self::Unlit | Self::Depth | Self::Layers)
+        !matches!(self, Self::Edges | Self::XRayEdges | Self::Polygons | Self::Borders)
     }
 
     fn recipe(self) -> Recipe {
@@ -236,6 +244,12 @@ impl Kind {
             Self::LookUps(_) => surfaces(["surface", "lit_by_look_ups"]),
             Self::Unlit => surfaces(["surface", "unlit"]),
             Self::Depth => Recipe { draws_color: false, ..surfaces(["place", "nothing"]) },
+            Self::Ids => Recipe {
+                buffers: vec![VERTICES, INSTANCES, IDS],
+                draws_color: false,
+                depth: Depth::Tested,
+                ..surfaces(["identified", "owner"])
+            },
             Self::Layers => {
                 Recipe { blend: Some(ADDED), depth: Depth::Ignored, ..surfaces(["place", "layer"]) }
             }
@@ -276,6 +290,12 @@ const INSTANCES: VertexBufferLayout<'_> = VertexBufferLayout {
     ],
 };
 
+const IDS: VertexBufferLayout<'_> = VertexBufferLayout {
+    array_stride: size_of::<u32>() as u64,
+    step_mode: VertexStepMode::Instance,
+    attributes: &[attribute(6, VertexFormat::Uint32, 0)],
+};
+
 const BOXES: VertexBufferLayout<'_> = VertexBufferLayout {
     array_stride: size_of::<BoxEdges>() as u64,
     step_mode: VertexStepMode::Instance,
@@ -309,11 +329,12 @@ mod tests {
 
     use super::*;
 
-    const KINDS: [Kind; 9] = [
+    const KINDS: [Kind; 10] = [
         Kind::Lit,
         Kind::LookUps(1),
         Kind::Unlit,
         Kind::Depth,
+        Kind::Ids,
         Kind::Layers,
         Kind::Edges,
         Kind::XRayEdges,

@@ -17,6 +17,8 @@ pub(super) enum DepthAs {
     Texture,
     /// It loads texels of several samples.
     Multisampled,
+    /// It does not, but loads those of an item buffer in its place.
+    Ids { multisampled: bool },
     /// The depth test reads it: nothing is bound.
     Attachment,
 }
@@ -55,12 +57,13 @@ impl Layouts {
         let counting = frame_stages.difference(ShaderStages::VERTEX);
         let mut frame = vec![entry(0, frame_stages, buffer(BufferBindingType::Uniform))];
         if depth != DepthAs::Attachment {
-            let texture = BindingType::Texture {
+            let (sample_type, multisampled) = match depth {
+                DepthAs::Ids { multisampled } => (TextureSampleType::Uint, multisampled),
                 // Depth as plain numbers: depth textures cannot be loaded from on OpenGL.
-                sample_type: TextureSampleType::Float { filterable: false },
-                view_dimension: TextureViewDimension::D2,
-                multisampled: depth == DepthAs::Multisampled,
+                _ => (TextureSampleType::Float { filterable: false }, depth == DepthAs::Multisampled),
             };
+            let texture =
+                BindingType::Texture { sample_type, view_dimension: TextureViewDimension::D2, multisampled };
             frame.push(entry(1, counting, texture));
         }
         let storage = |&(binding, written): &(u32, bool)| {
@@ -80,7 +83,7 @@ impl Layouts {
     }
 }
 
-/// Binds a frame; the depth for passes that bind it.
+/// Binds a frame; the depth, or an item buffer, for passes that bind it.
 pub(super) fn frame(
     device: &Device,
     layout: &BindGroupLayout,

@@ -18,7 +18,7 @@ use wgpu::{Device, ShaderModule, ShaderStages};
 use super::batch::Batch;
 use super::bind::{Bound, Layouts};
 use super::clock::Tape;
-use super::rectangles::Rectangles;
+use super::rectangles::{Draws, Of, Rectangles};
 use crate::geom::Viewport;
 
 /// The pass.
@@ -33,7 +33,7 @@ impl CountFragments {
     pub(super) const BUFFERS: &[(u32, bool)] = &[(0, false), (1, true)];
 
     pub(super) fn new(device: &Device, layouts: &Layouts, module: &ShaderModule) -> Self {
-        Self(Rectangles::new(device, layouts, module, "tercet count fragments", "count"))
+        Self(Rectangles::new(device, layouts, module, Of::Proxies, ("tercet count fragments", "count")))
     }
 
     pub(super) fn record(
@@ -44,6 +44,6 @@ impl CountFragments {
         viewport: Viewport,
     ) {
         let count = batch.questions.proxies.len() as u32;
-        self.0.record(tape, [bound.frame, bound.batch], (&batch.proxies, count), viewport);
+        self.0.record(tape, [bound.frame, bound.batch], (&batch.proxies, Draws::Count(count)), viewport);
     }
 }

@@ -5,6 +5,7 @@ use std::time::Instant;
 use bytemuck::bytes_of;
 use wgpu::{
     Backend, BindGroup, CommandEncoder, CommandEncoderDescriptor, Device, RenderPass, SubmissionIndex,
+    TextureView,
 };
 
 use super::ask_natively::{self, AskNatively};
@@ -16,6 +17,7 @@ use super::kept_depths::can_be_kept;
 use super::pack::PackedFrame;
 use super::questions::Terms;
 use super::sweep::answer::Sweeps;
+use super::sweep::owners;
 use super::targets::{FrameTargets, Kind};
 use super::{GpuConfig, GpuQueries, guard};
 use crate::Error;
@@ -27,6 +29,8 @@ use crate::query::Wait;
 pub(super) struct Frame {
     pub(super) view: View,
     pub(super) targets: FrameTargets,
+    /// The app's item buffer, if it has one.
+    pub(super) ids: Option<TextureView>,
     pub(super) terms: Terms,
     bindings: BindGroup,
     /// The same for native queries, if there are any.
@@ -52,6 +56,10 @@ impl GpuQueries {
             return Err(Error::Target { why: "there are none: call GpuQueries::target first".into() });
         };
         targets.check(view, self.backend)?;
+        let ids = self.ids.clone();
+        if let Some(ids) = &ids {
+            owners::check(ids, view.viewport(), view.samples())?;
+        }
         // Native queries see what is attached. OpenGL's emulation copies no depth.
         let can_be_late = self.native.is_none() && self.backend != Backend::Gl;
         let keeps = if can_be_late && can_be_kept(targets.depth.view.texture()) { late } else { 0 };
@@ -82,6 +90,7 @@ impl GpuQueries {
             late: None,
             view: view.clone(),
             targets,
+            ids,
             terms: Terms::new(view, self.slack, native_slack, &self.device.limits()),
             bindings,
             native_bindings,

@@ -38,7 +38,7 @@
 //! | `questions`, `pack` | what was asked, as the shaders read it |
 //! | `counter`, `bind` | the ways of counting, behind one door |
 //! | `count_fragments`, `count_workgroups`, `gather_blocks`, `ask_natively` | one pass each |
-//! | `rectangles` | the draw of all proxies that passes in fragment shaders share |
+//! | `rectangles` | the draw of all proxies, or of what is listed, that passes in fragment shaders share |
 //! | `kept_depths` | depths of earlier frames, for late questions |
 //! | `frame` | passes are recorded, submitted once a wave, and waited for |
 //! | `batch`, `read_back` | buffers of a question pass, from upload to read-back |
@@ -82,7 +82,10 @@ mod targets;
 
 use std::time::Duration;
 
-use wgpu::{Adapter, Backend, Buffer, BufferDescriptor, BufferUsages, Device, Features, Queue, RenderPass};
+use wgpu::{
+    Adapter, Backend, Buffer, BufferDescriptor, BufferUsages, Device, Features, Queue, RenderPass,
+    TextureView,
+};
 
 /// The wgpu that this backend speaks.
 pub use wgpu;
@@ -161,7 +164,10 @@ pub struct GpuStats {
     pub sweeps: u64,
     /// Objects that they looked at.
     pub swept: u64,
-    /// Bytes of boxes that were uploaded for them: of those that have moved since the last sweep.
+    /// Groups among them into which rays were cast.
+    pub groups: u64,
+    /// Bytes of boxes, and for rays of the tree, that were uploaded for them: of what has changed since
+    /// the last sweep.
     pub uploaded: u64,
     /// Submissions to the queue.
     pub submits: u64,
@@ -195,6 +201,8 @@ pub struct GpuQueries {
     clock: Option<Clock>,
     uniforms: Buffer,
     targets: Option<FrameTargets>,
+    /// The app's item buffer, if it has one.
+    ids: Option<TextureView>,
     frame: Option<Frame>,
     /// Asked and not yet recorded.
     open: Questions,
@@ -248,6 +256,7 @@ impl GpuQueries {
             clock: guard::guarded(device, || Clock::new(device, queue))?,
             uniforms,
             targets: None,
+            ids: None,
             frame: None,
             open: Questions::default(),
             batches: Vec::new(),
@@ -267,6 +276,19 @@ impl GpuQueries {
     /// Says what the next frames draw into. They are checked when a frame begins.
     pub fn target(&mut self, targets: &FrameTargets) {
         self.targets = Some(targets.clone());
+    }
+
+    /// Says where the next frames' *item buffer* is, if there is one: a texture of Rg16Uint or R32Uint,
+    /// with as many samples a pixel as the depth, in which each sample that somebody owns has one more
+    /// than the object's [slot](crate::scene::ObjectId::slot), and all others 0. Of Rg16Uint the first
+    /// channel has the lower 16 bits. (R32Uint has one sample a pixel on most devices.)
+    ///
+    /// The app writes it while it draws: it is one of its colour attachments, cleared with 0. So
+    /// [`SweepTest::Owners`](super::SweepTest::Owners) is answered without drawing anything twice; of
+    /// several objects at the same depth the one that was drawn last owns the sample. Without an item
+    /// buffer the answer is [`Answer::Unknown`]. It is checked when a frame begins.
+    pub fn target_ids(&mut self, ids: Option<&TextureView>) {
+        self.ids = ids.cloned();
     }
 
     /// Counters since the frame began, and times of an earlier one.

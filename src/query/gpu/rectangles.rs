@@ -1,13 +1,18 @@
-//! The rectangles of all proxies in one instanced draw, for fragment shaders that write to buffers.
+//! Rectangles in one instanced draw, of all proxies or of what is listed, for fragment shaders that
+//! write to buffers.
 //!
 //! The pass draws into a colour target of the viewport's size that nothing is written to, since a pass
 //! must have an attachment.
 
+use std::mem::offset_of;
+
+use bytemuck::{Pod, Zeroable};
 use wgpu::{
     BindGroup, Buffer, Color, ColorTargetState, ColorWrites, Device, Extent3d, FragmentState, LoadOp,
     Operations, PrimitiveState, PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor,
     RenderPipeline, RenderPipelineDescriptor, ShaderModule, StoreOp, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages, TextureView, VertexState,
+    TextureFormat, TextureUsages, TextureView, VertexAttribute, VertexBufferLayout, VertexFormat,
+    VertexState, VertexStepMode,
 };
 
 use super::bind::Layouts;
@@ -18,6 +23,65 @@ use crate::geom::Viewport;
 /// What the target holds does not matter.
 const FORMAT: TextureFormat = TextureFormat::R8Unorm;
 
+/// Something in a list whose rectangle is drawn: the twin of the struct in `shaders/shared/listed.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(super) struct Listed {
+    rect: [u32; 4],
+    index: u32,
+    unused: [u32; 3],
+}
+
+/// Whose rectangles are drawn, as instances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Of {
+    /// Every proxy of a buffer.
+    Proxies,
+    /// [`Listed`].
+    List,
+}
+
+impl Of {
+    /// The vertex stage.
+    fn entry(self) -> &'static str {
+        match self {
+            Self::Proxies => "rectangle",
+            Self::List => "listed_rectangle",
+        }
+    }
+
+    fn layout(self) -> VertexBufferLayout<'static> {
+        const LISTED: VertexBufferLayout<'static> = VertexBufferLayout {
+            array_stride: size_of::<Listed>() as u64,
+            step_mode: VertexStepMode::Instance,
+            attributes: &[
+                VertexAttribute {
+                    format: VertexFormat::Uint32x4,
+                    offset: offset_of!(Listed, rect) as u64,
+                    shader_location: 0,
+                },
+                VertexAttribute {
+                    format: VertexFormat::Uint32,
+                    offset: offset_of!(Listed, index) as u64,
+                    shader_location: 1,
+                },
+            ],
+        };
+        match self {
+            Self::Proxies => PackedProxy::LAYOUT,
+            Self::List => LISTED,
+        }
+    }
+}
+
+/// How many instances are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Draws<'a> {
+    Count(u32),
+    /// As the arguments of a draw say, from a byte of a buffer on.
+    Indirect(&'a Buffer, u64),
+}
+
 /// A pass over rectangles.
 #[derive(Debug)]
 pub(super) struct Rectangles {
@@ -27,13 +91,13 @@ pub(super) struct Rectangles {
 }
 
 impl Rectangles {
-    /// The pass of a shader that has the vertex stage `rectangle` and this fragment stage.
+    /// The pass of a shader that has this fragment stage.
     pub(super) fn new(
         device: &Device,
         layouts: &Layouts,
         module: &ShaderModule,
-        label: &'static str,
-        fragment: &str,
+        of: Of,
+        (label, fragment): (&'static str, &str),
     ) -> Self {
         let nothing = ColorTargetState { format: FORMAT, blend: None, write_mask: ColorWrites::empty() };
         let pipeline = device.create_render_pipeline(&RenderPipelineDescriptor {
@@ -41,9 +105,9 @@ impl Rectangles {
             layout: Some(&layouts.pipeline),
             vertex: VertexState {
                 module,
-                entry_point: Some("rectangle"),
+                entry_point: Some(of.entry()),
                 compilation_options: Default::default(),
-                buffers: &[Some(PackedProxy::LAYOUT)],
+                buffers: &[Some(of.layout())],
             },
             primitive: PrimitiveState { topology: PrimitiveTopology::TriangleStrip, ..Default::default() },
             depth_stencil: None,
@@ -60,12 +124,12 @@ impl Rectangles {
         Self { label, pipeline, canvas: Canvas::default() }
     }
 
-    /// Records the pass over the first so many proxies of a buffer, with these bind groups in order.
+    /// Records the pass over the first instances of a buffer, with these bind groups in order.
     pub(super) fn record(
         &mut self,
         tape: &mut Tape<'_>,
         groups: [&BindGroup; 2],
-        (proxies, count): (&Buffer, u32),
+        (instances, draws): (&Buffer, Draws<'_>),
         viewport: Viewport,
     ) {
         let attachment = RenderPassColorAttachment {
@@ -84,8 +148,11 @@ impl Rectangles {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, groups[0], &[]);
         pass.set_bind_group(1, groups[1], &[]);
-        pass.set_vertex_buffer(0, proxies.slice(..));
-        pass.draw(0..4, 0..count);
+        pass.set_vertex_buffer(0, instances.slice(..));
+        match draws {
+            Draws::Count(count) => pass.draw(0..4, 0..count),
+            Draws::Indirect(buffer, offset) => pass.draw_indirect(buffer, offset),
+        }
     }
 }
 
@@ -114,4 +181,20 @@ fn canvas_of(device: &Device, [width, height]: [u32; 2]) -> TextureView {
         view_formats: &[],
     };
     device.create_texture(&descriptor).create_view(&Default::default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Shaders;
+    use super::super::pack::tests::layout;
+    use super::*;
+
+    #[test]
+    fn structs_lie_in_memory_as_the_shader_thinks() {
+        let module = wgpu::naga::front::wgsl::parse_str(&Shaders::default().enlist).expect("it parses");
+        let (members, span) = layout(&module, "Listed");
+        let index = offset_of!(Listed, index) as u32;
+        assert_eq!(members, [("rect".to_owned(), 0), ("index".to_owned(), index)]);
+        assert_eq!(span as usize, size_of::<Listed>());
+    }
 }

@@ -40,10 +40,25 @@ pub struct Shaders {
     pub project: Cow<'static, str>,
     /// [`SweepTest::Raster`](crate::query::SweepTest::Raster).
     pub sweep_raster: Shader,
+    /// Where the tree's nodes lie on the screen, for [`SweepTest::Rays`](crate::query::SweepTest::Rays);
+    /// for any number of samples.
+    pub enclose: Cow<'static, str>,
+    /// The list of a sweep's groups; for any number of samples.
+    pub enlist: Cow<'static, str>,
+    /// [`SweepTest::Rays`](crate::query::SweepTest::Rays).
+    pub sweep_rays: Shader,
+    /// [`SweepTest::Owners`](crate::query::SweepTest::Owners).
+    pub sweep_owners: Shader,
     /// The pyramid of farthest depths.
     pub build_pyramid: Shader,
     /// [`SweepTest::HiZ`](crate::query::SweepTest::HiZ).
     pub sweep_hi_z: Shader,
+    /// Which nodes of the tree hold what was drawn first, in an indirect frame by rays.
+    pub mark: Cow<'static, str>,
+    /// Its groups, and its loose objects.
+    pub extract: Cow<'static, str>,
+    /// Its verdicts in the order of meshes.
+    pub spread: Cow<'static, str>,
     /// Which objects a list of an indirect frame holds.
     pub select: Cow<'static, str>,
     /// Instances and arguments of an indirect frame.
@@ -68,30 +83,39 @@ impl Shaders {
     }
 }
 
-/// A pass, after the parts that it shares with others.
+/// A pass, after the parts that it shares with others: what it reads of the frame, depth if nothing else
+/// is named, and the rest.
 macro_rules! shader {
-    ($($part:literal),*) => {
+    ([$single:literal, $multisampled:literal] $($part:literal),*) => {
         Shader {
             single: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
-                include_str!("../../../shaders/shared/depth.wgsl"),
+                include_str!(concat!("../../../shaders/", $single)),
                 $(include_str!(concat!("../../../shaders/", $part))),*
             )),
             multisampled: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
-                include_str!("../../../shaders/shared/depth_multisampled.wgsl"),
+                include_str!(concat!("../../../shaders/", $multisampled)),
                 $(include_str!(concat!("../../../shaders/", $part))),*
             )),
         }
+    };
+    ($($part:literal),*) => {
+        shader!(["shared/depth.wgsl", "shared/depth_multisampled.wgsl"] $($part),*)
     };
 }
 
 impl Default for Shaders {
     fn default() -> Self {
         Self {
-            count_fragments: shader!("shared/counts.wgsl", "shared/rectangle.wgsl", "count_fragments.wgsl"),
+            count_fragments: shader!(
+                "shared/counts.wgsl",
+                "shared/corner.wgsl",
+                "shared/rectangle.wgsl",
+                "count_fragments.wgsl"
+            ),
             count_workgroups: shader!(
                 "shared/counts.wgsl",
                 "shared/tiles.wgsl",
@@ -114,11 +138,55 @@ impl Default for Shaders {
             project: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/sweep/place.wgsl"),
                 include_str!("../../../shaders/sweep/project.wgsl"),
             )),
-            sweep_raster: shader!("shared/verdict.wgsl", "shared/rectangle.wgsl", "sweep/raster.wgsl"),
+            sweep_raster: shader!(
+                "shared/verdict.wgsl",
+                "shared/corner.wgsl",
+                "shared/rectangle.wgsl",
+                "shared/listed_rectangle.wgsl",
+                "sweep/raster.wgsl"
+            ),
+            enclose: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/shared/nodes.wgsl"),
+                include_str!("../../../shaders/sweep/place.wgsl"),
+                include_str!("../../../shaders/sweep/enclose.wgsl"),
+            )),
+            enlist: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/nodes.wgsl"),
+                include_str!("../../../shaders/shared/listed.wgsl"),
+                include_str!("../../../shaders/sweep/enlist.wgsl"),
+            )),
+            sweep_rays: shader!(
+                "shared/verdict.wgsl",
+                "shared/nodes.wgsl",
+                "shared/corner.wgsl",
+                "shared/listed_rectangle.wgsl",
+                "sweep/rays.wgsl"
+            ),
+            sweep_owners: shader!(
+                ["shared/ids.wgsl", "shared/ids_multisampled.wgsl"]
+                "shared/verdict.wgsl",
+                "sweep/owners.wgsl"
+            ),
             build_pyramid: shader!("shared/pyramid.wgsl", "sweep/pyramid.wgsl"),
             sweep_hi_z: shader!("shared/verdict.wgsl", "shared/pyramid.wgsl", "sweep/hi_z.wgsl"),
+            mark: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/nodes.wgsl"),
+                include_str!("../../../shaders/shared/marks.wgsl"),
+                include_str!("../../../shaders/indirect/mark.wgsl"),
+            )),
+            extract: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
+                include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/shared/nodes.wgsl"),
+                include_str!("../../../shaders/shared/marks.wgsl"),
+                include_str!("../../../shaders/shared/listed.wgsl"),
+                include_str!("../../../shaders/indirect/extract.wgsl"),
+            )),
+            spread: Cow::Borrowed(include_str!("../../../shaders/indirect/spread.wgsl")),
             select: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/verdict.wgsl"),
                 include_str!("../../../shaders/indirect/select.wgsl"),

@@ -15,13 +15,18 @@
 //! with the arguments of an indirect draw: one draw a mesh, in the same order of objects from frame to
 //! frame. No optional feature is needed: no first instance, no count.
 //!
+//! By [`SweepTest::Rays`] objects are tested as HROC does: what was drawn first tells which subtrees hold
+//! none of it, and rays go down these. The same are found as by [`SweepTest::Raster`].
+//!
 //! | file | |
 //! |---|---|
+//! | `groups` | occludee groups, and rays |
 //! | `order` | objects by mesh, and meshes by batch |
 //! | `select` | which objects a list holds: a prefix sum |
 //! | `compact` | instances and arguments |
 
 mod compact;
+mod groups;
 mod order;
 mod select;
 
@@ -45,6 +50,7 @@ use crate::geom::View;
 use crate::query::SweepTest;
 use crate::scene::{Batch, Scene};
 use compact::{ARGUMENTS, Compact, List, Parts};
+use groups::Groups;
 use order::Order;
 use select::{Select, Source, Which};
 
@@ -63,8 +69,13 @@ pub struct BatchMesh {
 #[derive(Clone, Debug)]
 pub struct IndirectConfig {
     /// How objects are tested. [`SweepTest::HiZ`] is the fastest, and calls some of the hidden ones
-    /// visible; all others draw the proxies, which is exact.
+    /// visible; [`SweepTest::Raster`] draws the proxies, which is exact; [`SweepTest::Rays`] those of
+    /// groups, which finds the same. Groups are nodes of the tree: it should be a fine one from the
+    /// beginning ([`TreeConfig::unasked_leaf`](crate::tree::TreeConfig::unasked_leaf)).
+    /// [`SweepTest::Owners`] is no test of objects that are not drawn yet: it is taken for `Raster`.
     pub test: SweepTest,
+    /// By rays, a group that covers more of the screen is opened; 1 opens only what may hold the eye.
+    pub share: f32,
     /// Whether the counters of [`IndirectStats`] come back, some frames late. Nothing waits for them.
     pub counters: bool,
     /// See [`GpuConfig::depth_slack`](super::GpuConfig::depth_slack).
@@ -75,7 +86,13 @@ pub struct IndirectConfig {
 
 impl Default for IndirectConfig {
     fn default() -> Self {
-        Self { test: SweepTest::HiZ, counters: false, depth_slack: None, shaders: Shaders::default() }
+        Self {
+            test: SweepTest::HiZ,
+            share: 0.25,
+            counters: false,
+            depth_slack: None,
+            shaders: Shaders::default(),
+        }
     }
 }
 
@@ -89,6 +106,8 @@ pub struct IndirectStats {
     /// Of an earlier frame, if counters are asked for: objects drawn because the last frame had found
     /// them visible, because this one has, and of those that hide nothing.
     pub drawn: Option<[u32; 3]>,
+    /// The same of what was tested by rays: groups, and objects by themselves.
+    pub tested: Option<[u32; 2]>,
 }
 
 /// One indirect draw: the objects of a batch that a list holds.
@@ -152,11 +171,13 @@ pub struct IndirectCuller {
     scratch: Vec<PackedBox>,
     order: Order,
     asked: Asked,
+    /// For tests by rays; then nothing else is asked.
+    groups: Option<Groups>,
     /// By slot, across frames.
     remembered: Buffer,
     lists: [List; 3],
     counters: Option<ReadBack>,
-    drawn: Option<[u32; 3]>,
+    counted: Option<[u32; 5]>,
 }
 
 impl IndirectCuller {
@@ -191,10 +212,11 @@ impl IndirectCuller {
                 scratch: Vec::new(),
                 order: Order::new(device),
                 asked: Asked::new(device),
+                groups: (config.test == SweepTest::Rays).then(|| Groups::new(device, &config.shaders)),
                 remembered: remembered(device, 64),
                 lists: std::array::from_fn(|_| List::new(device, 64, 16)),
                 counters: config.counters.then(|| ReadBack::new(device, COUNTERS)),
-                drawn: None,
+                counted: None,
                 config,
             }
         })
@@ -233,13 +255,10 @@ impl IndirectCuller {
             let bound = self.bind(view, targets.readable_depth())?;
             let mut tape = Tape { device: &device, encoder, clock: None };
             self.record_proxies(&mut tape, &bound, view);
-            let several = usize::from(view.samples() > 1);
             let has_last = self.order.has_late() || targets.resolves();
             for (which, is_wanted) in Which::ALL.into_iter().zip([true, true, has_last]) {
-                if which == Which::Missed && self.asked.count() > 0 {
-                    let by_pyramid = self.config.test == SweepTest::HiZ;
-                    let passes = self.passes[several].as_mut().expect("made when bound");
-                    passes.record_test(&mut tape, &bound, &self.asked, view.viewport(), by_pyramid);
+                if which == Which::Missed {
+                    self.record_test(&mut tape, &bound, view);
                 }
                 if is_wanted {
                     self.record_list(&mut tape, which);
@@ -248,8 +267,17 @@ impl IndirectCuller {
                     draw(&mut pass, &self.batches(which));
                 }
             }
-            Ok(IndirectStats { objects: self.asked.count(), uploaded, drawn: self.drawn })
+            Ok(self.stats(uploaded))
         })?
+    }
+
+    fn stats(&self, uploaded: u64) -> IndirectStats {
+        IndirectStats {
+            objects: self.order.objects(),
+            uploaded,
+            drawn: self.counted.map(|[first, missed, last, ..]| [first, missed, last]),
+            tested: self.counted.filter(|_| self.groups.is_some()).map(|[.., groups, loose]| [groups, loose]),
+        }
     }
 
     /// Brings everything on the device up to date; returns the bytes uploaded.
@@ -263,7 +291,13 @@ impl IndirectCuller {
             // Nothing is remembered: as after a cut.
             self.remembered = remembered(device, scene.slot_bound() + scene.slot_bound() / 2);
         }
-        self.asked.resize(device, objects as usize)?;
+        match &mut self.groups {
+            Some(groups) => {
+                let (order, share) = (self.order.slots.known(), self.config.share);
+                uploaded += groups.follow((device, queue), scene, order, (view, share))?;
+            }
+            None => self.asked.resize(device, objects as usize)?,
+        }
         self.select.resize(device, queue, objects);
         if !self.lists[0].holds(objects, count) {
             self.lists = std::array::from_fn(|_| List::new(device, objects + objects / 2, count));
@@ -283,16 +317,40 @@ impl IndirectCuller {
     }
 
     fn record_proxies(&self, tape: &mut Tape<'_>, bound: &Bound, view: &View) {
-        if self.asked.count() == 0 {
+        if self.order.objects() == 0 {
             return;
         }
         let passes = self.passes[usize::from(view.samples() > 1)].as_ref().expect("made when bound");
-        let (boxes, slots) = (self.boxes.binding(), self.order.slots.binding());
-        passes.project.record(tape, &bound.view, boxes, slots, &self.asked);
+        let boxes = self.boxes.binding();
+        match &self.groups {
+            Some(groups) => groups.project(tape, &passes.project, bound, boxes),
+            None => {
+                let slots = self.order.slots.binding();
+                passes.project.record(tape, &bound.view, boxes, slots, &self.asked);
+            }
+        }
+    }
+
+    /// Records the test of all objects against what was drawn first.
+    fn record_test(&mut self, tape: &mut Tape<'_>, bound: &Bound, view: &View) {
+        if self.order.objects() == 0 {
+            return;
+        }
+        if let Some(groups) = &mut self.groups {
+            let remembered = exactly(&self.remembered, self.boxes.len() as u32, size_of::<u32>());
+            groups.look(tape, &self.config.shaders, bound, view, remembered);
+            if let Some(counters) = self.counters.as_ref().filter(|it| it.state() == State::Recorded) {
+                groups.copy_counts(tape.encoder, counters.buffer(), size_of::<[u32; 3]>() as u64);
+            }
+            return;
+        }
+        let passes = self.passes[usize::from(view.samples() > 1)].as_mut().expect("made when bound");
+        let by_pyramid = self.config.test == SweepTest::HiZ;
+        passes.record_test(tape, bound, &self.asked, view.viewport(), by_pyramid);
     }
 
     fn record_list(&self, tape: &mut Tape<'_>, which: Which) {
-        let objects = self.asked.count();
+        let objects = self.order.objects();
         if objects == 0 {
             return;
         }
@@ -300,7 +358,7 @@ impl IndirectCuller {
         let source = Source {
             boxes: self.boxes.binding(),
             order: order.clone(),
-            verdicts: self.asked.verdicts(),
+            verdicts: self.groups.as_ref().map_or_else(|| self.asked.verdicts(), Groups::verdicts),
             remembered: exactly(&self.remembered, self.boxes.len() as u32, size_of::<u32>()),
         };
         self.select.record(tape, which, &source);
@@ -344,7 +402,7 @@ impl IndirectCuller {
             // By now the frame before has been submitted.
             State::Recorded => counters.await_bytes(),
             State::Arrived => {
-                self.drawn = counters.read(bytemuck::pod_read_unaligned).or(self.drawn);
+                self.counted = counters.read(bytemuck::pod_read_unaligned).or(self.counted);
                 counters.reclaim();
             }
             _ => {}
@@ -355,8 +413,8 @@ impl IndirectCuller {
     }
 }
 
-/// The bytes of all counters.
-const COUNTERS: u64 = size_of::<[u32; 3]>() as u64;
+/// The bytes of all counters: what was drawn of each list, and what was tested.
+const COUNTERS: u64 = size_of::<[u32; 5]>() as u64;
 
 fn remembered(device: &Device, slots: usize) -> Buffer {
     device.create_buffer(&BufferDescriptor {

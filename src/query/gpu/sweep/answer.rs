@@ -1,12 +1,11 @@
 //! Sweeps that a policy asks for: the device looks, and the host reads the verdicts back.
 
-use std::num::NonZeroU64;
-
 use bytemuck::{bytes_of, cast_slice, try_cast_slice};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, Queue};
 
 use super::asked::{Asked, SEEN, exactly};
 use super::boxes::{self, PackedBox};
+use super::grove::{Groups, Grove};
 use super::mirror::Mirrored;
 use super::view::PackedView;
 use super::{Bound, Passes};
@@ -29,6 +28,8 @@ pub(in crate::query::gpu) struct Sweeps {
     view: Buffer,
     /// Whether the boxes are those of this frame.
     is_uploaded: bool,
+    /// Made by the first sweep by rays.
+    grove: Option<Grove>,
     /// Of this frame, if it has swept.
     pub(super) bound: Option<Bound>,
     pub(super) sweeps: Vec<Swept>,
@@ -45,6 +46,11 @@ pub(super) struct Swept {
     pub(super) ids: Vec<ObjectId>,
     slots: Buffer,
     pub(super) asked: Asked,
+    /// Whether verdicts are those of slots, instead of the objects listed here.
+    by_slot: bool,
+    /// Into which rays are cast.
+    groups: Groups,
+    /// Verdicts of the objects listed here; after them those of the tree, if rays were cast.
     read_back: ReadBack,
 }
 
@@ -61,6 +67,7 @@ impl Sweeps {
                 mapped_at_creation: false,
             }),
             is_uploaded: false,
+            grove: None,
             bound: None,
             sweeps: Vec::new(),
             refused: Vec::new(),
@@ -72,6 +79,7 @@ impl Sweeps {
     pub(in crate::query::gpu) fn forget(&mut self) {
         (self.is_uploaded, self.bound) = (false, None);
         self.refused.clear();
+        self.grove.iter_mut().for_each(Grove::forget);
         for swept in &mut self.sweeps {
             swept.ticket = None;
             swept.read_back.reclaim();
@@ -101,10 +109,15 @@ impl Sweeps {
             found.clear();
             let arrived = swept.read_back.read(|bytes| {
                 let verdicts: &[u32] = try_cast_slice(bytes).unwrap_or(&[]);
-                for (&id, &verdict) in swept.ids.iter().zip(verdicts) {
-                    if verdict == SEEN {
+                for (index, &id) in swept.ids.iter().enumerate() {
+                    let index = if swept.by_slot { id.slot() } else { index };
+                    if verdicts.get(index) == Some(&SEEN) {
                         found.insert(id);
                     }
+                }
+                if let Some(grove) = &self.grove {
+                    let below = verdicts.get(swept.asked.words()..).unwrap_or(&[]);
+                    grove.found(&swept.groups, below, &self.boxes, &mut found);
                 }
             });
             match arrived {
@@ -126,9 +139,13 @@ impl GpuQueries {
         sweep: &Sweep<'_>,
     ) -> Result<(), Error> {
         self.bind_sweeps()?;
-        // Nobody here knows whose draws are whose.
         let recorded = match sweep.test {
-            SweepTest::Owners => None,
+            SweepTest::Owners => self.record_owners(sweep).or_else(refused)?,
+            SweepTest::Rays => match self.record_looks(sweep, Some(sweep.test)).map(Some).or_else(refused)? {
+                // The tree is more than the device can bind: its objects may not be.
+                None => self.record_looks(sweep, Some(SweepTest::Raster)).map(Some).or_else(refused)?,
+                recorded => recorded,
+            },
             test => self.record_looks(sweep, Some(test)).map(Some).or_else(refused)?,
         };
         let sweeps = self.sweeps.as_mut().expect("they are bound");
@@ -137,6 +154,32 @@ impl GpuQueries {
             None => sweeps.refused.push(ticket),
         }
         Ok(())
+    }
+
+    /// Records the looking through the item buffer, if there is one; returns which sweep it is.
+    fn record_owners(&mut self, sweep: &Sweep<'_>) -> Result<Option<usize>, Error> {
+        let (device, several) = (&self.device, sweep.view.samples() > 1);
+        let (Some(frame), Some(sweeps)) = (&mut self.frame, &mut self.sweeps) else { return Ok(None) };
+        let Some(ids) = frame.ids.as_ref() else { return Ok(None) };
+        let passes = sweeps.passes[usize::from(several)].as_mut().expect("made when bound");
+        let owners = passes.owners(device, &self.config.shaders, several)?;
+        let index = free(&mut sweeps.sweeps, device);
+        let swept = &mut sweeps.sweeps[index];
+        swept.groups.clear();
+        swept.ids.clear();
+        swept.ids.extend_from_slice(sweep.loose);
+        swept.by_slot = true;
+        guard::guarded(device, || {
+            swept.asked.resize(device, sweep.scene.slot_bound())?;
+            swept.claim(device, 0);
+            let mut tape = frame::tape(&mut frame.encoder, device, &mut self.clock);
+            let verdicts = swept.asked.verdicts();
+            owners.record(&mut tape, (&self.uniforms, ids), verdicts, frame.view.viewport());
+            swept.copy_verdicts(tape.encoder);
+            self.stats.sweeps += 1;
+            self.stats.swept += swept.ids.len() as u64;
+            Ok(Some(index))
+        })?
     }
 
     /// Records the passes of a sweep, without a test only those that make proxies; returns which
@@ -149,29 +192,58 @@ impl GpuQueries {
         self.bind_sweeps()?;
         let (device, queue) = (&self.device, &self.queue);
         let frame = self.frame.as_mut().expect("sweeps are bound in a frame");
-        let Sweeps { passes, boxes, scratch, is_uploaded, bound, sweeps, stack, .. } =
+        let Sweeps { passes, boxes, scratch, is_uploaded, grove, bound, sweeps, stack, .. } =
             self.sweeps.as_mut().expect("they are bound");
-        let passes = passes[usize::from(frame.view.samples() > 1)].as_mut().expect("made when bound");
+        let several = frame.view.samples() > 1;
+        let passes = passes[usize::from(several)].as_mut().expect("made when bound");
         let bound = bound.as_ref().expect("they are bound");
         let index = free(sweeps, device);
         let swept = &mut sweeps[index];
-        list(sweep, stack, &mut swept.ids);
-        self.stats.sweeps += 1;
-        self.stats.swept += swept.ids.len() as u64;
+        let by_rays = test == Some(SweepTest::Rays) && !sweep.groups.is_empty();
+        let one_by_one = Sweep { groups: if by_rays { &[] } else { sweep.groups }, ..*sweep };
+        list(&one_by_one, stack, &mut swept.ids);
+        swept.groups.clear();
+        swept.by_slot = false;
         guard::guarded(device, || {
             if !std::mem::replace(is_uploaded, true) {
                 boxes::collect(sweep.scene, scratch);
                 self.stats.uploaded += boxes.follow(device, queue, scratch)?;
             }
             swept.load(device, queue)?;
+            let viewport = frame.view.viewport();
             let mut tape = frame::tape(&mut frame.encoder, device, &mut self.clock);
+            let grove = if by_rays {
+                let shaders = &self.config.shaders;
+                let grove = match grove {
+                    Some(grove) => grove,
+                    none => none.insert(guard::guarded(device, || Grove::new(device, shaders))?),
+                };
+                // Now, if it cannot be made, nothing of it is recorded.
+                passes.rays(device, shaders, several)?;
+                let making = (&passes.project, bound);
+                self.stats.uploaded += grove.make_ready(&mut tape, queue, making, boxes, sweep.scene)?;
+                swept.groups.load(device, queue, grove, sweep)?;
+                Some(grove)
+            } else {
+                None
+            };
+            swept.claim(device, grove.as_ref().map_or(0, |grove| grove.bytes()));
+            if let Some(grove) = grove {
+                let rays = passes.rays(device, &self.config.shaders, several)?;
+                let to = (swept.read_back.buffer(), 4 * swept.asked.words() as u64);
+                grove.record(&mut tape, rays, bound, &swept.groups, viewport, to);
+                self.stats.groups += u64::from(swept.groups.count());
+                self.stats.swept += swept.groups.objects();
+            }
             let slots = exactly(&swept.slots, swept.asked.count(), size_of::<u32>());
             passes.project.record(&mut tape, &bound.view, boxes.binding(), slots, &swept.asked);
             if let Some(test) = test {
                 let by_pyramid = test == SweepTest::HiZ;
-                passes.record_test(&mut tape, bound, &swept.asked, frame.view.viewport(), by_pyramid);
+                passes.record_test(&mut tape, bound, &swept.asked, viewport, by_pyramid);
             }
-            swept.copy_verdicts(device, tape.encoder);
+            swept.copy_verdicts(tape.encoder);
+            self.stats.sweeps += 1;
+            self.stats.swept += swept.ids.len() as u64;
             Ok(index)
         })?
     }
@@ -220,12 +292,15 @@ impl Swept {
         Ok(())
     }
 
+    /// Makes room for the verdicts to come back, and for so many bytes after them.
+    fn claim(&mut self, device: &Device, more: u64) {
+        self.read_back.claim(device, 4 * self.asked.words() as u64 + more);
+    }
+
     /// Records the way of the verdicts into memory that can be read.
-    fn copy_verdicts(&mut self, device: &Device, encoder: &mut CommandEncoder) {
-        let verdicts = self.asked.verdicts();
-        let bytes = verdicts.size.map_or(0, NonZeroU64::get);
-        self.read_back.claim(device, bytes);
-        encoder.copy_buffer_to_buffer(verdicts.buffer, 0, self.read_back.buffer(), 0, bytes);
+    fn copy_verdicts(&self, encoder: &mut CommandEncoder) {
+        let (verdicts, bytes) = (self.asked.verdicts().buffer, 4 * self.asked.words() as u64);
+        encoder.copy_buffer_to_buffer(verdicts, 0, self.read_back.buffer(), 0, bytes);
     }
 }
 
@@ -238,6 +313,8 @@ fn free(sweeps: &mut Vec<Swept>, device: &Device) -> usize {
             ids: Vec::new(),
             slots: slots(device, 64),
             asked: Asked::new(device),
+            by_slot: false,
+            groups: Groups::new(device),
             read_back: ReadBack::new(device, 256),
         });
         sweeps.len() - 1

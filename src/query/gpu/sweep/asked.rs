@@ -46,6 +46,11 @@ impl Asked {
         self.count
     }
 
+    /// How many verdicts are bound, and come back: one at least.
+    pub(in crate::query::gpu) fn words(&self) -> usize {
+        self.count.max(1) as usize
+    }
+
     /// The proxies as instances.
     pub(in crate::query::gpu) fn instances(&self) -> &Buffer {
         &self.proxies
@@ -81,7 +86,7 @@ fn verdicts(device: &Device, count: usize) -> Buffer {
     device.create_buffer(&BufferDescriptor {
         label: Some("tercet verdicts"),
         size: (count * size_of::<u32>()) as u64,
-        usage: BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_SRC,
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
 }

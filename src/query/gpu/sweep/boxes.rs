@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::geom::Aabb;
 use crate::scene::Scene;
 
-/// The twin of `Box` in `shaders/sweep/project.wgsl`.
+/// The twin of `Box` in `shaders/sweep/place.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(in crate::query::gpu) struct PackedBox {
@@ -28,13 +28,17 @@ pub(super) const FARTHEST: f32 = 1e9;
 
 impl PackedBox {
     /// Nothing.
-    const NONE: Self = Self { low: [0.0; 3], kind: 0, high: [0.0; 3], node: u32::MAX };
+    pub(super) const NONE: Self = Self { low: [0.0; 3], kind: 0, high: [0.0; 3], node: u32::MAX };
 
     /// A box, of an object or of a node.
     pub(super) fn new(aabb: &Aabb, node: u32, traits: u32) -> Self {
         let farthest = aabb.min.abs().max(aabb.max.abs()).max_element();
         let kind = if farthest <= FARTHEST { BOXED } else { ALWAYS };
         Self { low: aabb.min.to_array(), kind: kind | traits, high: aabb.max.to_array(), node }
+    }
+
+    pub(super) fn aabb(&self) -> Aabb {
+        Aabb::new(self.low.into(), self.high.into())
     }
 }
 

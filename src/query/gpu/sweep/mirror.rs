@@ -55,6 +55,11 @@ impl<T: Pod> Mirrored<T> {
         Ok(uploaded)
     }
 
+    /// The array as the device has it.
+    pub(in crate::query::gpu) fn known(&self) -> &[T] {
+        &self.known
+    }
+
     /// How many elements there are.
     pub(in crate::query::gpu) fn len(&self) -> usize {
         self.known.len()

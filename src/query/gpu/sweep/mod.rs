@@ -2,10 +2,14 @@
 //!
 //! ```text
 //!   boxes, by slot ──project──▶ a proxy and a verdict each ──raster, or pyramid and hi_z──▶ verdicts
+//!
+//!   the tree's nodes ──enclose──▶ a rectangle each ──enlist──▶ groups ──rays──▶ their objects' verdicts
 //! ```
 //!
-//! `SweepTest::Rays` is answered as `Raster` is: by contract the answer is the same. `Owners` is not
-//! known here, which draws.
+//! `SweepTest::Rays` casts rays into groups, and draws what is loose as `Raster` does; on a device that
+//! cannot bind the whole tree it is answered as `Raster` is, which finds the same. `Owners` reads the app's
+//! item buffer ([`GpuQueries::target_ids`](super::GpuQueries::target_ids)); without one it is not known,
+//! which draws.
 //!
 //! | file | |
 //! |---|---|
@@ -13,19 +17,28 @@
 //! | `view`, `project` | a view's uniforms, and proxies from boxes |
 //! | `asked` | proxies and verdicts |
 //! | `raster` | the test of ROC: draw the proxies |
+//! | `flat`, `enclose` | the tree on the device, and where its nodes lie on the screen |
+//! | `rays` | the test of HROC: draw groups, and send rays down the tree |
+//! | `grove` | what sweeps by rays keep for a frame |
 //! | `pyramid`, `hi_z` | the test of Rákos 2010: compare with the farthest depth around |
+//! | `owners` | who owns a sample, by an item buffer |
 //! | `answer` | sweeps of a policy: one read-back each |
 //! | `inspect` | what the device has made, to look at |
 
 pub(super) mod answer;
 pub(super) mod asked;
 pub(super) mod boxes;
+pub(super) mod enclose;
+pub(super) mod flat;
+mod grove;
 mod hi_z;
 mod inspect;
 pub(super) mod mirror;
+pub(super) mod owners;
 pub(super) mod project;
 pub(super) mod pyramid;
 pub(super) mod raster;
+pub(super) mod rays;
 pub(super) mod view;
 
 use wgpu::{
@@ -39,14 +52,17 @@ use super::bind::{self, DepthAs, Layouts};
 use super::clock::Tape;
 use super::counter::compiled;
 use super::guard::{failed, guarded};
+use super::rectangles::{Draws, Of};
 use super::shaders::Shaders;
 use crate::Error;
 use crate::geom::Viewport;
 use asked::Asked;
 use hi_z::HiZ;
-use project::Project;
+use owners::Owners;
+pub(super) use project::Project;
 use pyramid::Pyramid;
 use raster::Raster;
+use rays::Rays;
 
 /// The stages that read the frame and the depth.
 const STAGES: ShaderStages = ShaderStages::VERTEX_FRAGMENT.union(ShaderStages::COMPUTE);
@@ -58,6 +74,10 @@ pub(super) struct Passes {
     frame: Layouts,
     pub(super) project: Project,
     pub(super) raster: Raster,
+    /// Made when first needed.
+    rays: Option<Rays>,
+    /// The same.
+    owners: Option<Owners>,
     pub(super) pyramid: Pyramid,
     pub(super) hi_z: HiZ,
 }
@@ -82,11 +102,40 @@ impl Passes {
             Self {
                 frame: Layouts::new(device, STAGES, &[], depth),
                 project: Project::new(device, &compiled(device, &shaders.project)),
-                raster: Raster::new(device, &module(&shaders.sweep_raster), depth),
+                raster: Raster::new(device, &module(&shaders.sweep_raster), depth, Of::Proxies),
+                rays: None,
+                owners: None,
                 pyramid: Pyramid::new(device, &module(&shaders.build_pyramid), depth),
                 hi_z: HiZ::new(device, &module(&shaders.sweep_hi_z), depth),
             }
         })
+    }
+
+    /// The pass that casts rays.
+    pub(super) fn rays(
+        &mut self,
+        device: &Device,
+        shaders: &Shaders,
+        multisampled: bool,
+    ) -> Result<&mut Rays, Error> {
+        match &mut self.rays {
+            Some(rays) => Ok(rays),
+            none => Ok(none.insert(guarded(device, || {
+                let module = compiled(device, shaders.sweep_rays.source(multisampled));
+                Rays::new(device, &module, DepthAs::texture(multisampled))
+            })?)),
+        }
+    }
+
+    /// The pass that looks through item buffers.
+    fn owners(&mut self, device: &Device, shaders: &Shaders, several: bool) -> Result<&Owners, Error> {
+        match &mut self.owners {
+            Some(owners) => Ok(owners),
+            none => Ok(none.insert(guarded(device, || {
+                let module = compiled(device, shaders.sweep_owners.source(several));
+                Owners::new(device, &module, several)
+            })?)),
+        }
     }
 
     /// Binds a view's and a frame's uniforms, and its depth.
@@ -110,7 +159,8 @@ impl Passes {
             self.pyramid.record(tape, &bound.frame);
             self.hi_z.record(tape, &bound.frame, asked, &self.pyramid);
         } else {
-            self.raster.record(tape, &bound.frame, asked, viewport);
+            let instances = (asked.instances(), Draws::Count(asked.count()));
+            self.raster.record(tape, &bound.frame, asked, instances, viewport);
         }
     }
 }

@@ -1,5 +1,5 @@
 //! A view as the shader that makes proxies reads it: the twin of `View` in
-//! `shaders/sweep/project.wgsl`.
+//! `shaders/sweep/place.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};

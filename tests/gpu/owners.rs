@@ -1,0 +1,206 @@
+//! Who owns a sample, by the item buffer that the reference renderer draws, against frames of each
+//! object alone: it owns a sample, or shares one, where its own depth is that of the whole frame.
+
+use tercet::Culler;
+use tercet::draw::{self, Shading};
+use tercet::geom::{Frustum, View, Viewport};
+use tercet::policy::{self, Policy};
+use tercet::query::gpu::{FrameTargets, GpuQueries};
+use tercet::query::{Answer, QueryBackend, Sweep, SweepTest, Ticket, Wait};
+use tercet::scene::{ObjectId, ObjectRef, ObjectSet, Scene, SceneConfig};
+use tercet::worlds;
+
+use crate::stage::Stage;
+use crate::support::{Gpu, depth_texture, gpus, read_depth, texture};
+
+const SCREEN: Viewport = Viewport::new(97, 55);
+const FRAMES: u32 = 2;
+
+/// What some frames came to.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Outcome {
+    /// Owners that were found, and those who own nothing.
+    owners: usize,
+    others: usize,
+    /// Objects that own a sample at the depth of another one's, and were not found.
+    tied: usize,
+    /// Objects found that own nothing, or not found that own a sample alone.
+    pub wrong: usize,
+}
+
+/// A view's targets: depth, and ids beside a colour that nobody needs.
+struct Targets {
+    depth: wgpu::Texture,
+    ids: wgpu::Texture,
+}
+
+impl Targets {
+    fn new(gpu: &Gpu, view: &View) -> Self {
+        let depth = depth_texture(gpu, view);
+        let size = [depth.width(), depth.height()];
+        Self { ids: texture(gpu, draw::Renderer::IDS, size, view.samples()), depth }
+    }
+
+    fn set(&self, queries: &mut GpuQueries) {
+        let [depth, ids] = [&self.depth, &self.ids].map(|texture| texture.create_view(&Default::default()));
+        queries.target_ids(Some(&ids));
+        let mut targets = FrameTargets::new(depth);
+        targets.colors.push(None);
+        queries.target(&targets.with_color(ids, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
+    }
+}
+
+/// Draws worlds, and asks who owns samples.
+pub fn run(gpu: &Gpu, queries: &mut GpuQueries, seed: u64, samples: u32) -> Outcome {
+    let mut outcome = Outcome::default();
+    let mut stage = Stage::new(worlds::random(seed, 120), seed, SCREEN, true);
+    let mut scene = Scene::new(SceneConfig::default());
+    let mut renderer = draw::Renderer::with_ids(&gpu.device, &gpu.queue, None).expect("a renderer");
+    for frame in 0..FRAMES {
+        let view = stage.next(frame);
+        let view = view.clone().with_target(view.depth(), view.format(), samples);
+        scene.sync(&stage.world);
+        let objects: Vec<ObjectRef> = scene.objects().map(|object| object.object).collect();
+        let mut depth_of = |objects: &[ObjectRef], ask: bool| {
+            let targets = Targets::new(gpu, &view);
+            targets.set(queries);
+            renderer.begin(&view, stage.detail, Shading::Unlit);
+            queries.begin(&view).expect("begin");
+            let draw = |pass: &mut _| {
+                renderer.draw(pass, &stage.world, objects);
+            };
+            queries.draw(draw).expect("draw");
+            let found = if ask { owners(queries, &scene, &view, objects) } else { ObjectSet::default() };
+            queries.end().expect("end");
+            (read_depth(gpu, &targets.depth, &view).values, found)
+        };
+        let (whole, found) = depth_of(&objects, true);
+        let cleared = view.depth().cleared();
+        for &object in &objects {
+            let alone = depth_of(&[object], false).0;
+            let is_owner = alone.iter().zip(&whole).any(|(own, whole)| own == whole && *own > cleared);
+            let is_found = found.contains(object.id);
+            outcome.owners += usize::from(is_found);
+            outcome.others += usize::from(!is_owner);
+            outcome.wrong += usize::from(is_found && !is_owner);
+            if is_owner && !is_found {
+                let others: Vec<_> = objects.iter().copied().filter(|other| other.id != object.id).collect();
+                let is_alone = depth_of(&others, false).0 != whole;
+                outcome.wrong += usize::from(is_alone);
+                outcome.tied += usize::from(!is_alone);
+            }
+        }
+    }
+    outcome
+}
+
+/// Those who own a sample of what has been drawn.
+fn owners(queries: &mut GpuQueries, scene: &Scene, view: &View, objects: &[ObjectRef]) -> ObjectSet {
+    let loose: Vec<ObjectId> = objects.iter().map(|object| object.id).collect();
+    let frustum = Frustum::new(view);
+    let test = SweepTest::Owners;
+    let sweep = Sweep { scene, view, frustum: &frustum, groups: &[], loose: &loose, test };
+    queries.sweep(Ticket(3), &sweep).expect("a sweep");
+    let mut found = None;
+    let deliver = |_, answer: Answer<'_>| match answer {
+        Answer::Swept(objects) => found = Some(objects.clone()),
+        other => panic!("{other:?}"),
+    };
+    queries.answers(Wait::Block, deliver).expect("answers");
+    found.expect("an answer")
+}
+
+#[test]
+fn owners_are_those_whose_depth_is_that_of_the_frame() {
+    for gpu in gpus() {
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
+        for &samples in gpu.sample_counts() {
+            let mut all = Outcome::default();
+            for seed in 0..3 {
+                let Outcome { owners, others, tied, wrong } = run(&gpu, &mut queries, seed, samples);
+                all.owners += owners;
+                all.others += others;
+                all.tied += tied;
+                all.wrong += wrong;
+            }
+            println!("{:?}, {samples} samples: {all:?}", gpu.backend);
+            assert_eq!(all.wrong, 0, "{:?}, {samples} samples: {all:?}", gpu.backend);
+            assert!(all.owners > 50 && all.others > 100 && all.tied * 10 < all.owners, "{all:?}");
+        }
+    }
+}
+
+/// Without an item buffer the answer is unknown, and what cannot be one is refused.
+#[test]
+fn item_buffers_are_checked() {
+    for gpu in gpus() {
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
+        let mut stage = Stage::new(worlds::random(1, 20), 1, SCREEN, true);
+        let view = stage.next(0);
+        let mut scene = Scene::new(SceneConfig::default());
+        scene.sync(&stage.world);
+        let targets = Targets::new(&gpu, &view);
+        targets.set(&mut queries);
+        let of = |format, size| texture(&gpu, format, size, 1).create_view(&Default::default());
+        let size = [SCREEN.width, SCREEN.height];
+        for bad in [of(wgpu::TextureFormat::Rgba8Unorm, size), of(draw::Renderer::IDS, [SCREEN.width, 1])] {
+            queries.target_ids(Some(&bad));
+            assert!(matches!(queries.begin(&view), Err(tercet::Error::Target { .. })));
+        }
+        queries.target_ids(None);
+        queries.begin(&view).expect("begin");
+        let frustum = Frustum::new(&view);
+        let test = SweepTest::Owners;
+        let sweep = Sweep { scene: &scene, view: &view, frustum: &frustum, groups: &[], loose: &[], test };
+        queries.sweep(Ticket(3), &sweep).expect("a sweep");
+        let mut answers = 0;
+        let deliver = |_, answer: Answer<'_>| answers += usize::from(matches!(answer, Answer::Unknown));
+        queries.answers(Wait::Block, deliver).expect("answers");
+        assert_eq!(answers, 1);
+    }
+}
+
+/// HROC with occluder filtering, on the item buffer: nothing is lost, and less is drawn first.
+#[test]
+fn filtered_occluders_lose_nothing() {
+    for gpu in gpus() {
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
+        for &samples in gpu.sample_counts() {
+            let (mut wrong, mut first) = (0, [0; 2]);
+            for (filtering, first) in ["false", "true"].into_iter().zip(&mut first) {
+                let mut policy = policy::by_name("hroc").expect("a policy of that name");
+                policy.set("occluder_filtering", filtering).expect("a dial of that name");
+                let mut eye: Culler<Box<dyn Policy>> = Culler::new(policy);
+                let mut stage = Stage::new(worlds::random(2, 120), 2, SCREEN, true);
+                let mut scene = Scene::new(SceneConfig::default());
+                let mut renderer =
+                    draw::Renderer::with_ids(&gpu.device, &gpu.queue, None).expect("a renderer");
+                for frame in 0..12 {
+                    let view = stage.next(frame);
+                    let view = view.clone().with_target(view.depth(), view.format(), samples);
+                    scene.sync(&stage.world);
+                    let mut shown = |eye: &mut Culler<Box<dyn Policy>>| {
+                        let targets = Targets::new(&gpu, &view);
+                        targets.set(&mut queries);
+                        renderer.begin(&view, stage.detail, Shading::Unlit);
+                        let draw = |pass: &mut _, objects: &[ObjectRef]| {
+                            renderer.draw(pass, &stage.world, objects);
+                        };
+                        eye.frame(&scene, &view, &mut queries, draw).expect("a frame");
+                        read_depth(&gpu, &targets.depth, &view).values
+                    };
+                    let culled = shown(&mut eye);
+                    let none = policy::by_name("none").expect("a policy of that name");
+                    let whole = shown(&mut Culler::new(none));
+                    wrong += culled.iter().zip(&whole).filter(|(a, b)| a != b).count();
+                    let counters = eye.policy().counters();
+                    let drawn = counters.iter().find(|counter| counter.key == "drawn_first");
+                    *first += drawn.expect("a counter of that name").count;
+                }
+            }
+            println!("{:?}, {samples} samples: {first:?} drawn first", gpu.backend);
+            assert_eq!(wrong, 0, "{:?}, {samples} samples", gpu.backend);
+            assert!(first[1] > 0 && first[1] < first[0], "{first:?}: less is drawn first");
+        }
+    }
+}
