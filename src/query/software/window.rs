@@ -71,8 +71,8 @@ impl Window {
     #[inline(always)]
     pub(super) fn is_hidden<I: Isa>(&self, farthest: &[[f32; LANES]], nearest: f32) -> bool {
         let (nearest, mut left) = (I::splat_f(nearest), 0);
-        for k in 0..4 {
-            left |= self.tiles[k] & !I::gt_f(I::load_f(&farthest[self.blocks[k] as usize]), nearest);
+        for (&block, &tiles) in self.blocks.iter().zip(&self.tiles) {
+            left |= tiles & !I::gt_f(I::load_f(&farthest[block as usize]), nearest);
         }
         left == 0
     }
@@ -81,8 +81,8 @@ impl Window {
     #[inline(always)]
     pub(super) fn is_clear<I: Isa>(&self, nearest: &[[f32; LANES]], least: f32) -> bool {
         let (least, mut left) = (I::splat_f(least), 0);
-        for k in 0..4 {
-            left |= self.tiles[k] & !I::ge_f(least, I::load_f(&nearest[self.blocks[k] as usize]));
+        for (&block, &tiles) in self.blocks.iter().zip(&self.tiles) {
+            left |= tiles & !I::ge_f(least, I::load_f(&nearest[block as usize]));
         }
         left == 0
     }
@@ -233,4 +233,46 @@ pub(super) fn entry_least(proxy: &Proxy) -> f32 {
         entry = if least < entry { least } else { entry };
     }
     entry
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::count::is_usable;
+    use super::super::isa::Portable;
+    use super::*;
+
+    fn proxy(edges: usize, planes: usize) -> Proxy {
+        let rect = PixelRect { x0: 0, y0: 0, x1: 4, y1: 4 };
+        let mut proxy = Proxy { rect, edges: [[0.0; 3]; 6], planes: [[0.0, 0.0, f32::MAX]; 3], nearest: 0.5 };
+        proxy.edges[..edges].fill([1.0, -2.0, 3.0]);
+        proxy.planes[..planes].fill([0.0, 0.0, 0.25]);
+        proxy
+    }
+
+    #[test]
+    fn unused_edges_and_planes_at_the_end_are_told() {
+        for (edges, planes) in (0..=6).flat_map(|edges| (0..=3).map(move |planes| (edges, planes))) {
+            assert_eq!(used::<Portable>(&proxy(edges, planes)), Some([edges, planes]));
+            let mut gap = proxy(edges, planes);
+            gap.edges[0] = [0.0; 3];
+            gap.planes[0] = [0.0, 0.0, f32::MAX];
+            let rest = |count: usize| if count == 1 { 0 } else { count };
+            assert_eq!(used::<Portable>(&gap), Some([rest(edges), rest(planes)]));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_evaluated_is_told_as_elsewhere() {
+        let mut unusable = 0;
+        for value in [0.0, -1.0, 1e33, -1e34, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
+            for at in 0..28 {
+                let mut proxy = proxy(6, 3);
+                let (edges, planes) = (proxy.edges.as_flattened_mut(), proxy.planes.as_flattened_mut());
+                *edges.iter_mut().chain(planes).chain([&mut proxy.nearest]).nth(at).unwrap() = value;
+                assert_eq!(used::<Portable>(&proxy).is_some(), is_usable(&proxy), "{value} at {at}");
+                unusable += usize::from(!is_usable(&proxy));
+            }
+        }
+        assert!(unusable > 80, "{unusable}");
+    }
 }
