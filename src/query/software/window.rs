@@ -10,7 +10,7 @@ use crate::geom::{PixelRect, Proxy};
 /// The most tiles a side of a window: it meets at most two blocks a side.
 const SIDE: u32 = 4;
 
-/// Most proxies of upright views are cut by no more edges than that, and have no more planes.
+/// Proxies of upright boxes in an upright view mostly have no more edges that cut them, and no more planes.
 pub(crate) const FEW: usize = 2;
 
 /// The tiles that a proxy meets, and which of their pixels are its.
@@ -109,7 +109,8 @@ impl Window {
             let mut dx = left;
             for i in 0..across {
                 let outer = outer::<I, EDGES>(proxy, dx, dy);
-                let covered = (self.columns >> (4 * i) & 15) * 0x1111 & rows & I::ge_f(outer, zero);
+                let columns = (self.columns >> (4 * i) & 15) * 0x1111;
+                let covered = columns & rows & I::ge_f(outer, zero);
                 total += covered.count_ones();
                 dx = I::add_f(dx, I::splat_f(TILE as f32));
             }
@@ -134,7 +135,8 @@ impl Window {
             let mut dx = left;
             for i in 0..across {
                 let outer = outer::<I, EDGES>(proxy, dx, dy);
-                let covered = (self.columns >> (4 * i) & 15) * 0x1111 & rows & I::ge_f(outer, zero);
+                let columns = (self.columns >> (4 * i) & 15) * 0x1111;
+                let covered = columns & rows & I::ge_f(outer, zero);
                 let mut entry = I::splat_f(proxy.nearest);
                 for plane in &proxy.planes[..PLANES] {
                     entry = I::min_f(value::<I>(plane, dx, dy), entry);
@@ -188,7 +190,8 @@ const SPREAD: [Mask; LANES] = [
 /// The tiles of a block, by the lowest four bits of columns and rows.
 #[inline(always)]
 fn quarter(columns: u32, rows: u32) -> Mask {
-    (columns & 15) * 0x1111 & SPREAD[(rows & 15) as usize]
+    let columns = (columns & 15) * 0x1111;
+    columns & SPREAD[(rows & 15) as usize]
 }
 
 /// How many edges and planes a proxy uses: those at the end that say nothing do not count. None if
