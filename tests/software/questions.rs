@@ -64,8 +64,11 @@ fn small_questions_equal_the_plain_loop() {
         let mut near = triangles(&mut dice, 300, width, height);
         near.retain(|t| (t[1] - t[0]).length().max((t[2] - t[0]).length()) < 30.0);
         let mesh = soup(&near);
-        let mut proxies: Vec<Proxy> = (0..500).map(|_| small_proxy(&mut dice, [width, height])).collect();
+        let mut proxies: Vec<Proxy> = (0..4000).map(|_| small_proxy(&mut dice, [width, height])).collect();
         proxies.retain(|proxy| proxy.rect.x0 < proxy.rect.x1 && proxy.rect.y0 < proxy.rect.y1);
+        let mut drawn = SoftwareQueries::new();
+        draw(&mut drawn, &view, std::slice::from_ref(&mesh));
+        proxies.iter_mut().for_each(|proxy| touch(&mut dice, proxy, &drawn));
         for level in LEVELS {
             let mut queries = SoftwareQueries::with_level(level);
             draw(&mut queries, &view, std::slice::from_ref(&mesh));
@@ -90,6 +93,30 @@ fn small_proxy(dice: &mut ChaCha8Rng, [width, height]: [u32; 2]) -> Proxy {
     (*x0, *x1) = (*x0 + at[0], (*x1 + at[0]).min(width));
     (*y0, *y1) = (*y0 + at[1], (*y1 + at[1]).min(height));
     proxy
+}
+
+/// Lets a proxy, more often than not, just reach or just miss what is stored for one of its pixels: so
+/// a single tile decides.
+fn touch(dice: &mut ChaCha8Rng, proxy: &mut Proxy, queries: &SoftwareQueries) {
+    let PixelRect { x0, y0, x1, y1 } = proxy.rect;
+    let pixels = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
+    let depth = |&(x, y): &(u32, u32)| queries.depth().at(x, y);
+    let by_depth = |a: &(u32, u32), b: &(u32, u32)| depth(a).total_cmp(&depth(b));
+    let pixel = match dice.random_range(0..4) {
+        0 => return,
+        1 => (dice.random_range(x0..x1), dice.random_range(y0..y1)),
+        2 => pixels.min_by(by_depth).expect("a pixel"),
+        _ => pixels.max_by(by_depth).expect("a pixel"),
+    };
+    let at = depth(&pixel) + [0.0, 1e-4, -1e-4][dice.random_range(0..3)];
+    *proxy = flat(proxy.rect, 1.0);
+    if dice.random_range(0..2) == 0 {
+        proxy.nearest = at;
+    } else {
+        let [a, b] = [dice.random_range(-0.1..0.1), dice.random_range(-0.1..0.1)];
+        let (dx, dy) = ((pixel.0 - x0) as f32 + 0.5, (pixel.1 - y0) as f32 + 0.5);
+        proxy.planes[0] = [a, b, at - a * dx - b * dy];
+    }
 }
 
 /// Asks about each proxy in both ways and compares.
