@@ -22,7 +22,7 @@ use scene::Scene;
 
 fn main() {
     let quick = std::env::args().any(|argument| argument == "--quick");
-    let rounds = if quick { 3 } else { 11 };
+    let rounds = if quick { 7 } else { 11 };
     let sizes: &[_] = if quick { &[(1280, 720)] } else { &[(640, 360), (1280, 720), (1920, 1080)] };
     println!(
         "| scene | size | way | faces | threads | Mtri/s | best | skipped | / plain | / 1 thread | ns a count | best | plain / it |"

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
 use tercet::geom::{Aabb, PixelRect, Proxy, Question, View, Viewport};
 use tercet::query::software::SoftwareQueries;
 use tercet::query::{Answer, QueryBackend, Ticket, Wait, Want};
@@ -48,6 +49,73 @@ fn answers_equal_the_plain_loop() {
                 }
             });
         }
+    }
+}
+
+/// Questions about few pixels are answered many at once: hidden, clear and mixed ones, of few and of
+/// many edges, beside each other and beside large ones; in the middle and at the viewport's border.
+#[test]
+fn small_questions_equal_the_plain_loop() {
+    let (mut hidden, mut clear, mut mixed) = (0, 0, 0);
+    for (seed, (width, height)) in [(16, 16), (37, 5), (129, 67), (250, 131)].into_iter().enumerate() {
+        let mut dice = dice(300 + seed as u64);
+        let view = pixel_view(width, height);
+        // Small ones leave much of a proxy in sight and hide the rest.
+        let mut near = triangles(&mut dice, 300, width, height);
+        near.retain(|t| (t[1] - t[0]).length().max((t[2] - t[0]).length()) < 30.0);
+        let mesh = soup(&near);
+        let mut proxies: Vec<Proxy> = (0..4000).map(|_| small_proxy(&mut dice, [width, height])).collect();
+        proxies.retain(|proxy| proxy.rect.x0 < proxy.rect.x1 && proxy.rect.y0 < proxy.rect.y1);
+        let mut drawn = SoftwareQueries::new();
+        draw(&mut drawn, &view, std::slice::from_ref(&mesh));
+        proxies.iter_mut().for_each(|proxy| touch(&mut dice, proxy, &drawn));
+        for level in LEVELS {
+            let mut queries = SoftwareQueries::with_level(level);
+            draw(&mut queries, &view, std::slice::from_ref(&mesh));
+            compare(&mut queries, &proxies);
+            for (visible, total) in proxies.iter().map(|proxy| plain(proxy, &queries)) {
+                hidden += u32::from(visible == 0 && total > 1);
+                clear += u32::from(visible == total && total > 1);
+                mixed += u32::from(0 < visible && visible < total);
+            }
+        }
+    }
+    assert!(hidden > 500 && clear > 500 && mixed > 100, "{hidden} hidden, {clear} clear, {mixed} mixed");
+}
+
+/// A proxy of a few pixels, cut off at the viewport's border; perhaps nothing is left.
+fn small_proxy(dice: &mut ChaCha8Rng, [width, height]: [u32; 2]) -> Proxy {
+    let side = [2, 6, 12, 17][dice.random_range(0..4)];
+    let sides = [dice.random_range(1..=side), dice.random_range(1..=side)];
+    let mut proxy = random_proxy(dice, sides, 0.0);
+    let at = [dice.random_range(0..width), dice.random_range(0..height)];
+    let PixelRect { x0, y0, x1, y1 } = &mut proxy.rect;
+    (*x0, *x1) = (*x0 + at[0], (*x1 + at[0]).min(width));
+    (*y0, *y1) = (*y0 + at[1], (*y1 + at[1]).min(height));
+    proxy
+}
+
+/// Lets a proxy, more often than not, just reach or just miss what is stored for one of its pixels: so
+/// a single tile decides.
+fn touch(dice: &mut ChaCha8Rng, proxy: &mut Proxy, queries: &SoftwareQueries) {
+    let PixelRect { x0, y0, x1, y1 } = proxy.rect;
+    let pixels = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
+    let depth = |&(x, y): &(u32, u32)| queries.depth().at(x, y);
+    let by_depth = |a: &(u32, u32), b: &(u32, u32)| depth(a).total_cmp(&depth(b));
+    let pixel = match dice.random_range(0..4) {
+        0 => return,
+        1 => (dice.random_range(x0..x1), dice.random_range(y0..y1)),
+        2 => pixels.min_by(by_depth).expect("a pixel"),
+        _ => pixels.max_by(by_depth).expect("a pixel"),
+    };
+    let at = depth(&pixel) + [0.0, 1e-4, -1e-4][dice.random_range(0..3)];
+    *proxy = flat(proxy.rect, 1.0);
+    if dice.random_range(0..2) == 0 {
+        proxy.nearest = at;
+    } else {
+        let [a, b] = [dice.random_range(-0.1..0.1), dice.random_range(-0.1..0.1)];
+        let (dx, dy) = ((pixel.0 - x0) as f32 + 0.5, (pixel.1 - y0) as f32 + 0.5);
+        proxy.planes[0] = [a, b, at - a * dx - b * dy];
     }
 }
 

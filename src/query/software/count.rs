@@ -23,7 +23,7 @@ pub(crate) struct Scene<'a> {
 
 /// Coefficients so large that the evaluation could overflow to NaN are not evaluated. Offsets stay
 /// below 2¹⁵, so below this bound all sums of two products are finite.
-const LARGEST: f32 = 1e33;
+pub(super) const LARGEST: f32 = 1e33;
 
 /// Whether a proxy can be evaluated: if not, it must be taken as visible.
 pub(crate) fn is_usable(proxy: &Proxy) -> bool {
@@ -292,7 +292,7 @@ fn child_pixels<I: Isa>(node: u32, side: i32, lanes: I::I, from: u32, end: u32) 
 
 /// A function of the contract, at sixteen places.
 #[inline(always)]
-fn value<I: Isa>(f: &[f32; 3], dx: I::F, dy: I::F) -> I::F {
+pub(super) fn value<I: Isa>(f: &[f32; 3], dx: I::F, dy: I::F) -> I::F {
     let [a, b, c] = splat_each::<I, 3>(*f);
     I::add_f(I::add_f(I::mul_f(a, dx), I::mul_f(b, dy)), c)
 }

@@ -54,6 +54,13 @@ impl Depth {
         &self.blocks
     }
 
+    /// The pixels of a tile, by its column and row of tiles.
+    #[inline(always)]
+    pub(crate) fn tile(&self, x: u32, y: u32) -> &[f32; LANES] {
+        let block = (y as usize / 4) * self.across + x as usize / 4;
+        &self.blocks[block].0[(y as usize % 4) * 4 + x as usize % 4]
+    }
+
     #[inline(always)]
     pub(crate) fn image(&self) -> DepthImage<'_> {
         DepthImage { depth: self }

@@ -118,6 +118,11 @@ impl HiZ {
         &self.levels[0].farthest
     }
 
+    /// The nearest of the tiles of every block.
+    pub(crate) fn nearest(&self) -> &[[f32; LANES]] {
+        &self.levels[0].nearest
+    }
+
     /// Brings everything up to date. O(changed blocks), and a look at one word a block.
     pub(crate) fn refresh(&mut self, simd: SimdLevel, depth: &Depth) {
         let base = &mut self.levels[0];

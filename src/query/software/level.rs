@@ -10,7 +10,7 @@ pub enum SimdLevel {
     Portable,
     /// SSE4.1: 4 lanes.
     Sse41,
-    /// AVX2: 8 lanes.
+    /// AVX2, and the instructions that count and move bits which came with it: 8 lanes.
     Avx2,
     /// AVX-512 F, DQ, BW and VL: 16 lanes.
     Avx512,
@@ -31,7 +31,12 @@ impl SimdLevel {
 fn detect() -> SimdLevel {
     // Each level has all that those below it need.
     let sse41 = is_x86_feature_detected!("sse4.1");
-    let avx2 = sse41 && is_x86_feature_detected!("avx2");
+    let avx2 = sse41
+        && is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("bmi2")
+        && is_x86_feature_detected!("lzcnt")
+        && is_x86_feature_detected!("popcnt");
     let avx512 = avx2
         && is_x86_feature_detected!("avx512f")
         && is_x86_feature_detected!("avx512dq")

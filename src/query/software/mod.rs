@@ -11,12 +11,14 @@
 //! | `compact` | small meshes that cover few pixels, all at once |
 //! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
 //! | `count` | answers to questions |
+//! | `batch`, `window` | many small ones at once |
 //! | `kept_frames` | depths of earlier frames, for late questions |
 //! | `sweep` | answers to sweeps, object by object |
 //! | `visibility` | who owns each pixel of a finished frame |
 //! | `isa`, `level`, `simd` | sixteen lanes, for each instruction set |
 
 mod bands;
+mod batch;
 mod clip;
 mod compact;
 mod count;
@@ -39,6 +41,7 @@ mod vertex;
 mod visibility;
 mod walk;
 mod winding;
+mod window;
 
 use std::ops::Range;
 
@@ -57,6 +60,7 @@ use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::scene::ObjectRef;
 use bands::Bands;
+use batch::{BATCH, Found};
 use depth::Depth;
 use hi_z::HiZ;
 use kept_frames::{KeptFrame, KeptFrames};
@@ -122,12 +126,6 @@ struct Asked {
     ticket: Ticket,
     want: Want,
     proxies: Range<usize>,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Found {
-    visible: u32,
-    total: u32,
 }
 
 impl Default for SoftwareQueries {
@@ -230,21 +228,15 @@ impl SoftwareQueries {
         };
         let (simd, proxies) = (self.simd, &self.proxies);
         let first = self.found.len();
-        self.found.resize(proxies.len(), Found::default());
         for asked in &self.asked[self.answered..] {
-            // Any answers are told from dual ones by their total.
-            let total = u32::from(asked.want == Want::Dual);
-            self.found[asked.proxies.clone()].fill(Found { visible: 0, total });
-        }
-        let answer = |(found, proxy): (&mut Found, &Proxy)| {
-            *found = if found.total == 1 {
-                let (visible, total) = simd::dual(simd, scene, proxy);
-                Found { visible, total }
-            } else {
-                Found { visible: u32::from(simd::any(simd, scene, proxy)), total: 0 }
+            let wanted = match asked.want {
+                Want::Any => Found::Any(false),
+                Want::Dual => Found::Dual { visible: 0, total: 0 },
             };
-        };
-        self.found[first..].par_iter_mut().zip(&proxies[first..]).with_min_len(32).for_each(answer);
+            self.found.resize(asked.proxies.end, wanted);
+        }
+        let batches = self.found[first..].par_chunks_mut(BATCH).zip(proxies[first..].par_chunks(BATCH));
+        batches.for_each(|(found, proxies)| simd::answer(simd, scene, proxies, found));
         self.answered = self.asked.len();
     }
 }
@@ -338,10 +330,9 @@ impl QueryBackend for SoftwareQueries {
         }
         for asked in &self.asked {
             let found = &self.found[asked.proxies.clone()];
-            let usable = self.proxies[asked.proxies.clone()].iter().all(count::is_usable);
             let answer = match (asked.want, found) {
-                (Want::Any, found) => Answer::Any(!usable || found.iter().any(|f| f.visible > 0)),
-                (Want::Dual, [f]) if usable => Answer::Dual { visible: f.visible, total: f.total },
+                (Want::Any, found) => Answer::Any(found.iter().any(|f| !matches!(f, Found::Any(false)))),
+                (Want::Dual, &[Found::Dual { visible, total }]) => Answer::Dual { visible, total },
                 (Want::Dual, _) => Answer::Unknown,
             };
             deliver(asked.ticket, answer);

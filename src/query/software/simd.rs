@@ -8,6 +8,7 @@
 )]
 
 use super::bands::{self, Frame, List};
+use super::batch::{self, Found};
 use super::count::{self, Scene};
 use super::footprint::{self, Footprint};
 use super::hi_z::{self, Row};
@@ -487,9 +488,9 @@ macro_rules! dispatch {
             {
                 #[target_feature(enable = "sse4.1")]
                 fn sse41 $(<$($generics)*>)? ($($arg: $type),*) $(-> $result)? { $module::$name::<Sse41 $($extra)*>($($arg),*) }
-                #[target_feature(enable = "avx2")]
+                #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
                 fn avx2 $(<$($generics)*>)? ($($arg: $type),*) $(-> $result)? { $module::$name::<Avx2 $($extra)*>($($arg),*) }
-                #[target_feature(enable = "avx512f,avx512dq,avx512bw,avx512vl")]
+                #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512dq,avx512bw,avx512vl")]
                 fn avx512 $(<$($generics)*>)? ($($arg: $type),*) $(-> $result)? { $module::$name::<Avx512 $($extra)*>($($arg),*) }
                 let best = SimdLevel::detect();
                 if level == SimdLevel::Avx512 && best >= SimdLevel::Avx512 {
@@ -529,8 +530,8 @@ dispatch! {
     any(scene: Scene<'_>, proxy: &Proxy) -> bool = count []
 }
 dispatch! {
-    /// See [`count::dual`].
-    dual(scene: Scene<'_>, proxy: &Proxy) -> (u32, u32) = count []
+    /// See [`batch::answer`].
+    answer(scene: Scene<'_>, proxies: &[Proxy], found: &mut [Found]) = batch []
 }
 
 dispatch! {
