@@ -18,15 +18,13 @@ use super::block::{Block, LANES, lanes};
 use super::gather::Words;
 use super::hull::Hull;
 use super::runs::{FreeRuns, Run};
+use super::stale::Stale;
 use crate::geom::Aabb;
 
 /// No object, no node, no block.
 pub(crate) const NONE: u32 = u32::MAX;
 /// An object that has a box, but no lane yet.
 const WAITING: u32 = u32::MAX - 1;
-
-/// Blocks that are skipped at once where nothing has moved.
-const REGION: usize = 64;
 
 /// The arena of blocks, with the way from an object to its lane.
 #[derive(Clone, Debug, Default)]
@@ -36,10 +34,8 @@ pub(crate) struct Blocks {
     pub(super) hulls: Vec<Hull>,
     /// The node that each block belongs to.
     pub(super) owner: Vec<u32>,
-    /// 1 for a block of which any object has a new box since the last refresh, else 0.
-    pub(super) stale: Vec<u8>,
-    /// Whether there is any such block.
-    pub(super) any_stale: bool,
+    /// The blocks of which any object has a new box since the last refresh.
+    pub(super) stale: Stale,
     /// What the last refresh of each block found.
     pub(super) news: Vec<News>,
     free: FreeRuns,
@@ -50,6 +46,8 @@ pub(crate) struct Blocks {
 /// What the refresh of a block found: a bit for each lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct News {
+    /// How many have moved.
+    pub(super) count: u16,
     /// It moved.
     pub(super) moved: u16,
     /// It moved, and had the time before.
@@ -65,11 +63,33 @@ type Known = Words;
 impl Known {
     #[inline(always)]
     fn location(&self) -> u32 {
-        self.owners()
+        self.owners
     }
 
     fn set_location(&mut self, location: u32) {
-        self.set_owners(location);
+        self.owners = location;
+    }
+}
+
+/// The newest boxes, taken apart: what is written to one of the arrays cannot change where the others
+/// are, and a loop need not look.
+pub(crate) struct Newest<'a> {
+    known: &'a mut [Known],
+    stale: &'a mut [u8],
+    any_stale: &'a mut bool,
+}
+
+impl Newest<'_> {
+    /// Notes the new box of an object that has a lane; false for another one. O(1).
+    #[inline(always)]
+    pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) -> bool {
+        let Some(known) = self.known.get_mut(slot as usize) else { return false };
+        // Neither NONE nor WAITING is in a block.
+        let Some(stale) = self.stale.get_mut(known.location() as usize / LANES) else { return false };
+        known.aabb = *aabb;
+        *stale = 1;
+        *self.any_stale = true;
+        true
     }
 }
 
@@ -93,7 +113,7 @@ impl Blocks {
 
     /// The newest box of an object, if the tree knows it.
     pub(crate) fn aabb_of(&self, slot: u32) -> Option<Aabb> {
-        self.known.get(slot as usize).filter(|known| known.location() != NONE).map(Words::aabb)
+        self.known.get(slot as usize).filter(|known| known.location() != NONE).map(|known| known.aabb)
     }
 
     /// Takes an object's box; its lane is given later.
@@ -116,18 +136,22 @@ impl Blocks {
     }
 
     /// Notes the new box of an object that the tree knows. O(1), and no block is touched.
-    #[inline(always)]
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) {
         let Some(known) = self.known.get_mut(slot as usize) else { return };
-        let location = known.location();
-        if location == NONE {
+        if known.location() == NONE {
             return;
         }
-        *known = Known::new(aabb, location);
-        if location != WAITING {
-            self.stale[location as usize / LANES] = 1;
-            self.any_stale = true;
+        known.aabb = *aabb;
+        if known.location() != WAITING {
+            self.stale.mark(known.location() as usize / LANES);
         }
+    }
+
+    /// The newest boxes, to note many.
+    #[inline(always)]
+    pub(crate) fn newest(&mut self) -> Newest<'_> {
+        let (stale, any_stale) = self.stale.bytes_mut();
+        Newest { known: &mut self.known, stale, any_stale }
     }
 
     /// Adds an object to a run. Amortised O(1).
@@ -192,7 +216,7 @@ impl Blocks {
         self.blocks.reserve_exact(more);
         self.hulls.reserve_exact(more);
         self.owner.reserve_exact(more);
-        self.stale.reserve_exact(more);
+        self.stale.reserve(more);
         self.news.reserve_exact(more);
     }
 
@@ -201,7 +225,7 @@ impl Blocks {
         self.blocks[run.used()].fill(Block::EMPTY);
         self.hulls[run.used()].fill(Hull::EMPTY);
         // Of a block that has run empty too: what it was told before was its node's business.
-        self.stale[run.all()].fill(0);
+        self.stale.clear(run.all());
         self.news[run.all()].fill(News::default());
         self.free.put(*run);
         *run = Run::EMPTY;
@@ -217,40 +241,27 @@ impl Blocks {
         self.of(run).flat_map(|(block, held)| lanes(held).map(|lane| (block.slots[lane], block.aabb(lane))))
     }
 
-    /// Lists the blocks whose objects have new boxes, in order, and holds them for refreshed. A look
-    /// at a byte for every block.
-    pub(super) fn take_stale(&mut self, list: &mut Vec<u32>) {
-        for (region, stale) in self.stale.chunks_mut(REGION).enumerate() {
-            if stale.iter().fold(0, |any, &stale| any | stale) == 0 {
-                continue;
-            }
-            // Eight at a time: which ones are stale is hard to foretell, how many in eight is easier.
-            for (eight, stale) in stale.chunks_mut(8).enumerate() {
-                let mut bytes = [0; 8];
-                bytes[..stale.len()].copy_from_slice(stale);
-                stale.fill(0);
-                let mut word = u64::from_le_bytes(bytes);
-                while word != 0 {
-                    list.push((region * REGION + eight * 8) as u32 + word.trailing_zeros() / 8);
-                    word &= word - 1;
-                }
-            }
-        }
-    }
-
     /// The box around the objects of a run.
     pub(super) fn around(&self, run: Run) -> Aabb {
-        let mut all = Hull::EMPTY;
-        for hull in &self.hulls[run.used()] {
-            all.unite(hull);
+        // By turns in two, so that one union need not wait for the other.
+        let (mut all, mut other) = (Hull::EMPTY, Hull::EMPTY);
+        let (pairs, last) = self.hulls[run.used()].as_chunks::<2>();
+        for [one, two] in pairs {
+            all.unite(one);
+            other.unite(two);
         }
+        last.iter().for_each(|hull| all.unite(hull));
+        all.unite(&other);
         all.aabb()
     }
 
     /// Memory held, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let block = size_of::<Block>() + size_of::<Hull>() + size_of::<u32>() + 1 + size_of::<News>();
-        self.blocks.capacity() * block + self.known.capacity() * size_of::<Known>() + self.free.bytes()
+        let block = size_of::<Block>() + size_of::<Hull>() + size_of::<u32>() + size_of::<News>();
+        self.blocks.capacity() * block
+            + self.stale.bytes()
+            + self.known.capacity() * size_of::<Known>()
+            + self.free.bytes()
     }
 
     fn item(&self, location: usize) -> (u32, Aabb) {
@@ -276,7 +287,7 @@ impl Blocks {
 
     /// What an object has still to be refreshed by goes with it.
     fn follow(&mut self, from: usize, to: usize) {
-        self.stale[to / LANES] |= self.stale[from / LANES];
+        self.stale.follow(from / LANES, to / LANES);
     }
 
     fn measure(&mut self, block: usize) {
@@ -295,7 +306,7 @@ impl Blocks {
         for (from, to) in run.used().zip(new.all()) {
             self.blocks[to] = self.blocks[from];
             self.hulls[to] = self.hulls[from];
-            self.stale[to] = self.stale[from];
+            self.stale.follow(from, to);
             self.news[to] = self.news[from];
             for (lane, &slot) in self.blocks[to].slots.iter().enumerate() {
                 if slot != NONE {
@@ -314,7 +325,7 @@ impl Blocks {
             grow(&mut self.blocks, total, Block::EMPTY);
             grow(&mut self.hulls, total, Hull::EMPTY);
             grow(&mut self.owner, total, NONE);
-            grow(&mut self.stale, total, 0);
+            self.stale.lengthen(total);
             grow(&mut self.news, total, News::default());
             run
         });

@@ -21,6 +21,7 @@ mod refresh;
 mod runs;
 mod settle;
 mod split;
+mod stale;
 mod traverse;
 mod validate;
 mod visit;

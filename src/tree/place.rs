@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::blocks::NONE;
+use super::blocks::{NONE, Newest};
 use super::config::Straddlers;
 use super::node::Role;
 use super::refit::{CONTENT, REGROUPED};
@@ -20,9 +20,14 @@ impl Tree {
 
     /// Gives an object that the tree holds a new box, which must be valid; the next
     /// [`Tree::update`] looks whether it stays in its cell. O(1).
-    #[inline(always)]
     pub(crate) fn set_bounds(&mut self, slot: u32, aabb: &Aabb) {
         self.blocks.set(slot, aabb);
+    }
+
+    /// The same for many objects.
+    #[inline(always)]
+    pub(crate) fn newest(&mut self) -> Newest<'_> {
+        self.blocks.newest()
     }
 
     /// Takes an object out. O(depth).
