@@ -81,6 +81,7 @@ impl Scene {
         self.note(|| SceneEdit::SetTraits { id, bounds, traits });
         self.objects.set_traits(slot, traits);
         self.set_slot_bounds(slot, bounds);
+        self.tree.set_tag(slot, self.objects.tag(slot));
     }
 
     /// Gives an object a box. It is not taken down here.
@@ -105,6 +106,7 @@ impl Scene {
         if self.objects.place(slot) == Place::Tree {
             self.tree.remove(slot);
         }
+        self.mirror.unbind(self.objects.entity(slot), slot);
         self.objects.remove(slot);
         self.pending += 1;
     }
@@ -121,6 +123,7 @@ impl Scene {
             Place::Tree
         };
         self.objects.set_place(slot, place);
+        self.tree.set_tag(slot, self.objects.tag(slot));
     }
 }
 

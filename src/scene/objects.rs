@@ -153,10 +153,12 @@ impl Objects {
             && (state & BATCH == 0 || Some(self.batch[s]) == traits.batch)
     }
 
-    /// Whether a slot is an entity's, in the tree, and without any traits.
-    #[inline]
-    pub(crate) fn is_bare(&self, slot: u32, entity: Entity) -> bool {
-        self.state[slot as usize] == Place::Tree as State && self.entity[slot as usize] == entity
+    /// What the tree is to know an object by: its entity's generation, if it is there and has no traits,
+    /// and else 0. Where the slot is the entity's by its id, that tells all that an entity without traits
+    /// is compared by.
+    pub(crate) fn tag(&self, slot: u32) -> u32 {
+        let is_bare = self.state[slot as usize] == Place::Tree as State;
+        if is_bare { tag_of(self.entity[slot as usize]) } else { 0 }
     }
 
     /// The objects in the tree whose boxes need no slack: the common case.
@@ -223,6 +225,12 @@ impl Objects {
             + self.batch.capacity() * size_of::<Batch>()
             + (self.free.capacity() + self.always.capacity() + self.always_at.capacity()) * size_of::<u32>()
     }
+}
+
+/// An entity's generation; it is never 0.
+#[inline(always)]
+pub(crate) fn tag_of(entity: Entity) -> u32 {
+    (entity.to_bits().get() >> 32) as u32
 }
 
 /// The traits' share of a state.

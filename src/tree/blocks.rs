@@ -14,12 +14,15 @@
 //! Objects that keep moving gather at the front of their run, so that most blocks are of movers
 //! alone or of objects that stand still: the latter are not touched.
 
+use glam::Vec4;
+
 use super::block::{Block, LANES, lanes};
 use super::gather::Words;
 use super::hull::Hull;
 use super::runs::{FreeRuns, Run};
 use super::stale::Stale;
 use crate::geom::Aabb;
+use crate::query::software::prefetch;
 
 /// No object, no node, no block.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -38,7 +41,7 @@ pub(crate) struct Blocks {
     pub(super) stale: Stale,
     /// What the last refresh of each block found.
     pub(super) news: Vec<News>,
-    free: FreeRuns,
+    pub(super) free: FreeRuns,
     /// By object slot.
     pub(super) known: Vec<Known>,
 }
@@ -56,20 +59,9 @@ pub(super) struct News {
     pub(super) out: u16,
 }
 
-/// What is known of an object: its newest box, and in the owner's word where it is (block × 16 +
-/// lane; [`NONE`] for an object that is not in the tree, or [`WAITING`]).
+/// What is known of an object: its newest box, and where it is (block × 16 + lane; [`NONE`] for an object
+/// that is not in the tree, or [`WAITING`]).
 type Known = Words;
-
-impl Known {
-    #[inline(always)]
-    fn location(&self) -> u32 {
-        self.owners
-    }
-
-    fn set_location(&mut self, location: u32) {
-        self.owners = location;
-    }
-}
 
 /// The newest boxes, taken apart: what is written to one of the arrays cannot change where the others
 /// are, and a loop need not look.
@@ -85,11 +77,36 @@ impl Newest<'_> {
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) -> bool {
         let Some(known) = self.known.get_mut(slot as usize) else { return false };
         // Neither NONE nor WAITING is in a block.
-        let Some(stale) = self.stale.get_mut(known.location() as usize / LANES) else { return false };
+        let Some(stale) = self.stale.get_mut(known.location as usize / LANES) else { return false };
         known.aabb = *aabb;
         *stale = 1;
         *self.any_stale = true;
         true
+    }
+}
+
+/// The newest boxes, with the objects' tags.
+#[derive(Clone, Copy)]
+pub(crate) struct Tagged<'a>(&'a [Known]);
+
+impl Tagged<'_> {
+    /// Slots that are asked of memory ahead of their turn, should it come: a page of memory, for within one
+    /// the machine asks ahead by itself.
+    const AHEAD: usize = 4096 / size_of::<Known>();
+
+    /// Whether an object has this tag, which is not 0, and this box. O(1), without a branch for each
+    /// coordinate.
+    #[inline(always)]
+    pub(crate) fn has(self, slot: u32, tag: u32, aabb: &Aabb) -> bool {
+        // The middle coordinates are there twice, so that each half is a load.
+        let halves = |Aabb { min, max }: Aabb| {
+            [Vec4::new(min.x, min.y, min.z, max.x), Vec4::new(min.z, max.x, max.y, max.z)]
+        };
+        prefetch(self.0.get(slot as usize + Self::AHEAD).unwrap_or(&Known::NOTHING));
+        self.0.get(slot as usize).is_some_and(|known| {
+            let ([a, b], [c, d]) = (halves(known.aabb), halves(*aabb));
+            known.tag == tag && (a.cmpeq(c) & b.cmpeq(d)).all()
+        })
     }
 }
 
@@ -113,7 +130,7 @@ impl Blocks {
 
     /// The newest box of an object, if the tree knows it.
     pub(crate) fn aabb_of(&self, slot: u32) -> Option<Aabb> {
-        self.known.get(slot as usize).filter(|known| known.location() != NONE).map(|known| known.aabb)
+        self.known.get(slot as usize).filter(|known| known.location != NONE).map(|known| known.aabb)
     }
 
     /// Takes an object's box; its lane is given later.
@@ -127,23 +144,35 @@ impl Blocks {
 
     /// Whether an object has a box, but no lane yet.
     pub(crate) fn is_waiting(&self, slot: u32) -> bool {
-        self.known.get(slot as usize).is_some_and(|known| known.location() == WAITING)
+        self.known.get(slot as usize).is_some_and(|known| known.location == WAITING)
     }
 
     /// Forgets an object that waits for its lane.
     pub(crate) fn renounce(&mut self, slot: u32) {
-        self.known[slot as usize].set_location(NONE);
+        self.known[slot as usize].location = NONE;
+    }
+
+    /// Gives an object that the tree knows a tag.
+    pub(crate) fn set_tag(&mut self, slot: u32, tag: u32) {
+        if let Some(known) = self.known.get_mut(slot as usize) {
+            known.tag = tag;
+        }
+    }
+
+    /// The newest boxes, to look at many.
+    pub(crate) fn tagged(&self) -> Tagged<'_> {
+        Tagged(&self.known)
     }
 
     /// Notes the new box of an object that the tree knows. O(1), and no block is touched.
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) {
         let Some(known) = self.known.get_mut(slot as usize) else { return };
-        if known.location() == NONE {
+        if known.location == NONE {
             return;
         }
         known.aabb = *aabb;
-        if known.location() != WAITING {
-            self.stale.mark(known.location() as usize / LANES);
+        if known.location != WAITING {
+            self.stale.mark(known.location as usize / LANES);
         }
     }
 
@@ -177,7 +206,7 @@ impl Blocks {
         hole = self.fill_hole(hole, run.location(run.len));
         self.blocks[hole / LANES].put(hole % LANES, NONE, &Aabb::EMPTY);
         self.measure(hole / LANES);
-        self.known[slot as usize].set_location(NONE);
+        self.known[slot as usize].location = NONE;
         if run.len == 0 {
             self.release(run);
         } else if run.is_sparse() {
@@ -271,7 +300,7 @@ impl Blocks {
 
     fn put(&mut self, location: usize, slot: u32, aabb: &Aabb) {
         self.blocks[location / LANES].put(location % LANES, slot, aabb);
-        self.known[slot as usize].set_location(location as u32);
+        self.known[slot as usize].location = location as u32;
     }
 
     /// Moves an object to the lane of one that is gone; returns the lane that it leaves.
@@ -295,7 +324,7 @@ impl Blocks {
     }
 
     fn location(&self, slot: u32) -> Option<usize> {
-        self.known.get(slot as usize).map(|known| known.location() as usize).filter(|&l| l < WAITING as usize)
+        self.known.get(slot as usize).map(|known| known.location as usize).filter(|&l| l < WAITING as usize)
     }
 
     /// Moves a run to one of another class, which must hold its objects.
@@ -310,7 +339,7 @@ impl Blocks {
             self.news[to] = self.news[from];
             for (lane, &slot) in self.blocks[to].slots.iter().enumerate() {
                 if slot != NONE {
-                    self.known[slot as usize].set_location((to * LANES + lane) as u32);
+                    self.known[slot as usize].location = (to * LANES + lane) as u32;
                 }
             }
         }
@@ -325,7 +354,7 @@ impl Blocks {
             grow(&mut self.blocks, total, Block::EMPTY);
             grow(&mut self.hulls, total, Hull::EMPTY);
             grow(&mut self.owner, total, NONE);
-            self.stale.lengthen(total);
+            self.stale.set_len(total);
             grow(&mut self.news, total, News::default());
             run
         });

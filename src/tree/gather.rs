@@ -15,37 +15,34 @@ use super::block::{Block, LANES};
 use super::hull::Hull;
 use crate::geom::Aabb;
 
-/// The newest box of an object in half a line of memory, and a word that is the owner's.
+/// The newest box of an object in half a line of memory, with two words of its owners.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Words {
     /// The box.
     pub(super) aabb: Aabb,
-    /// The owner's word.
-    pub(super) owners: u32,
-    unused: u32,
+    /// Where the object is.
+    pub(super) location: u32,
+    /// What the scene knows it by.
+    pub(super) tag: u32,
 }
 
 impl Words {
     /// No box: the empty one.
-    pub(super) const NOTHING: Self = Self {
-        aabb: Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY },
-        owners: u32::MAX,
-        unused: 0,
-    };
+    pub(super) const NOTHING: Self = Self::new(&Aabb::EMPTY, u32::MAX);
 
-    /// The words of a box, and the owner's.
-    pub(super) fn new(aabb: &Aabb, owners: u32) -> Self {
-        Self { aabb: *aabb, owners, unused: 0 }
+    /// A box that is somewhere, without a tag.
+    pub(super) const fn new(aabb: &Aabb, location: u32) -> Self {
+        Self { aabb: *aabb, location, tag: 0 }
     }
 
     /// Half of the words: one load, for they are in their order.
     #[inline(always)]
     fn half(&self, half: usize) -> [f32; 4] {
-        let Self { aabb: Aabb { min, max }, owners, unused } = *self;
+        let Self { aabb: Aabb { min, max }, location, tag } = *self;
         match half {
             0 => [min.x, min.y, min.z, max.x],
-            _ => [max.y, max.z, f32::from_bits(owners), f32::from_bits(unused)],
+            _ => [max.y, max.z, f32::from_bits(location), f32::from_bits(tag)],
         }
     }
 }

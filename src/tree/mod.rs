@@ -10,6 +10,7 @@ mod adapt;
 mod block;
 mod blocks;
 mod build;
+mod compact;
 mod config;
 mod gather;
 mod hull;

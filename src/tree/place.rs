@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::blocks::{NONE, Newest};
+use super::blocks::{NONE, Newest, Tagged};
 use super::config::Straddlers;
 use super::node::Role;
 use super::refit::{CONTENT, REGROUPED};
@@ -30,8 +30,19 @@ impl Tree {
         self.blocks.newest()
     }
 
+    /// Gives an object a tag, by which its owner knows it until it is removed. O(1).
+    pub(crate) fn set_tag(&mut self, slot: u32, tag: u32) {
+        self.blocks.set_tag(slot, tag);
+    }
+
+    /// The objects' newest boxes and tags, to look at many.
+    pub(crate) fn tagged(&self) -> Tagged<'_> {
+        self.blocks.tagged()
+    }
+
     /// Takes an object out. O(depth).
     pub(crate) fn remove(&mut self, slot: u32) {
+        self.blocks.set_tag(slot, 0);
         if self.blocks.is_waiting(slot) {
             self.blocks.renounce(slot);
             self.waiting -= 1;
