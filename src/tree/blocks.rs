@@ -102,7 +102,7 @@ impl Tagged<'_> {
         let halves = |Aabb { min, max }: Aabb| {
             [Vec4::new(min.x, min.y, min.z, max.x), Vec4::new(min.z, max.x, max.y, max.z)]
         };
-        prefetch(self.0.get(slot as usize + Self::AHEAD).unwrap_or(&Known::NOTHING));
+        prefetch(self.0.get((slot as usize).wrapping_add(Self::AHEAD)).unwrap_or(&Known::NOTHING));
         self.0.get(slot as usize).is_some_and(|known| {
             let ([a, b], [c, d]) = (halves(known.aabb), halves(*aabb));
             known.tag == tag && (a.cmpeq(c) & b.cmpeq(d)).all()
@@ -271,6 +271,7 @@ impl Blocks {
     }
 
     /// The box around the objects of a run.
+    #[inline(always)]
     pub(super) fn around(&self, run: Run) -> Aabb {
         // By turns in two, so that one union need not wait for the other.
         let (mut all, mut other) = (Hull::EMPTY, Hull::EMPTY);
