@@ -32,8 +32,11 @@ impl Tree {
     /// the objects that have left. O(blocks with moved objects), and a look at a byte for every
     /// block without, unless none has any.
     pub(super) fn refresh(&mut self) {
+        self.blocks.stale.take(&mut self.stale);
+        if self.stale.is_empty() {
+            return;
+        }
         let mut stale = std::mem::take(&mut self.stale);
-        self.blocks.stale.take(&mut stale);
         self.renew(&stale);
         let mut node = NONE;
         let mut moved = 0;
