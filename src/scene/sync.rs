@@ -235,3 +235,33 @@ fn traits((mobility, never_cull, not_occluder, slack, batch): Optional<'_>) -> T
         batch: batch.copied(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::scene::SceneConfig;
+
+    /// Nothing of an entity but its components changes: the short way, by its tag, must not be taken.
+    #[test]
+    fn what_comes_and_goes_while_its_entity_stands_still_is_found() {
+        let (mut world, mut scene) = (World::new(), Scene::new(SceneConfig::default()));
+        let good = Bounds(Aabb::new(Vec3::ZERO, Vec3::ONE));
+        let entity = world.spawn((good,));
+        let slot = scene.sync(&world).spawned as u32 - 1;
+        assert!(scene.find_changed(&mut [(entity, &good)].into_iter()).is_none(), "the short way");
+        for _ in 0..2 {
+            world.insert_one(entity, NotOccluder).expect("an entity");
+            assert_eq!(scene.sync(&world).moved, 1);
+            assert!(!scene.objects.is_occluder(slot));
+            world.remove_one::<NotOccluder>(entity).expect("an entity");
+            assert_eq!(scene.sync(&world).moved, 1);
+            assert!(scene.objects.is_occluder(slot));
+            world.insert_one(entity, Bounds(Aabb::EMPTY)).expect("an entity");
+            assert_eq!(scene.sync(&world).bad, 1);
+            world.insert_one(entity, good).expect("an entity");
+            assert_eq!((scene.sync(&world).bad, scene.objects.place(slot)), (0, Place::Tree));
+        }
+    }
+}

@@ -30,7 +30,7 @@ impl Tree {
         self.blocks.newest()
     }
 
-    /// Gives an object a tag, by which its owner knows it until it is removed. O(1).
+    /// Gives an object a tag, by which its owner knows it: 0 when it is inserted. O(1).
     pub(crate) fn set_tag(&mut self, slot: u32, tag: u32) {
         self.blocks.set_tag(slot, tag);
     }
@@ -42,7 +42,6 @@ impl Tree {
 
     /// Takes an object out. O(depth).
     pub(crate) fn remove(&mut self, slot: u32) {
-        self.blocks.set_tag(slot, 0);
         if self.blocks.is_waiting(slot) {
             self.blocks.renounce(slot);
             self.waiting -= 1;
