@@ -1,10 +1,11 @@
 //! What the tree costs to maintain and to ask, beside what nobody can do without.
 //!
 //! In one process, in turns, frame by frame: *write* (the app stores its movers' new boxes and
-//! velocities), *copy* (of all boxes), *scan* (all boxes against a frustum, sixteen at a time), and
-//! the tree with everything on: edits, placement, refit, settling, adaptation. Times are those of
-//! the thread alone. Prints tables of ratios of medians, by number, by manner of moving, of the
-//! mirror of a world, and of two threads by the wall's clock; writes them as CSV, and plots.
+//! velocities), *copy* (of all boxes), *scan* (all boxes against a frustum, sixteen at a time),
+//! *reads* (half a line of memory for each mover, in no order), and the tree with everything on:
+//! edits, placement, refit, settling, adaptation. Times are those of the thread alone. Prints
+//! tables of ratios of medians, by number, by manner of moving, of the mirror of a world, and of
+//! two threads by the wall's clock; writes them as CSV, and plots.
 //!
 //! `cargo bench --bench tree_maintenance [-- --quick] [-- --count N] [-- --moving SHARE]
 //! [-- --part number|manner|sync|threads] [-- --out DIR]`

@@ -8,7 +8,7 @@ use tercet::tree::{TreeConfig, Votes, Walk};
 
 use crate::clock::{median, seconds};
 use crate::workload::{Manner, Workload};
-use crate::yardstick::{self, Scan};
+use crate::yardstick::{self, Reads, Scan};
 
 /// Frames before the measurement: the first ones build, and make room.
 const WARM_UP: usize = 20;
@@ -42,6 +42,8 @@ pub struct Row {
     pub case: Case,
     pub write: f64,
     pub copy: f64,
+    /// Of half a line of memory for each mover, in no order.
+    pub reads: f64,
     pub update: f64,
     pub worst_update: f64,
     /// Of the last tenth of the frames, over that of the first tenth.
@@ -59,6 +61,8 @@ pub struct Row {
 struct Run {
     /// Write, copy, update.
     times: [Vec<f64>; 3],
+    /// Now and then.
+    reads: Vec<f64>,
     queries: [Query; 3],
     scene: Scene,
 }
@@ -71,12 +75,13 @@ pub fn run(case: Case) -> Row {
         for (least, times) in all.times.iter_mut().zip(&again.times) {
             least.iter_mut().zip(times).for_each(|(least, &time)| *least = least.min(time));
         }
+        all.reads.extend(again.reads);
         for (all, again) in all.queries.iter_mut().zip(again.queries) {
             all.scans.extend(again.scans);
             all.walks.extend(again.walks);
         }
     }
-    let Run { times: [write, copy, update], queries, scene } = all;
+    let Run { times: [write, copy, update], reads, queries, scene } = all;
     let tenth = (case.frames / 10).max(1);
     let tree = scene.tree();
     let across: usize =
@@ -85,6 +90,7 @@ pub fn run(case: Case) -> Row {
     Row {
         write: median(&write),
         copy: median(&copy),
+        reads: median(&reads),
         update: median(&update),
         worst_update: update.iter().copied().fold(0.0, f64::max),
         ageing: median(&update[case.frames - tenth..]) / median(&update[..tenth]),
@@ -106,6 +112,7 @@ fn once(case: &Case) -> Run {
     let mut ballot = Ballot(Votes { asks: case.asking != Asking::Nobody, ..Votes::default() });
     scene.adapt([&mut ballot]);
     let mut copied = load.boxes.clone();
+    let (reader, mut reads) = (Reads::new(load.moved().len()), Vec::new());
     let mut queries = load.views().map(|(_, view)| Query::new(view));
     // A frame in which nothing moves takes less than the clock can tell.
     let repeat = if case.moving == 0.0 { 64 } else { 1 };
@@ -126,11 +133,12 @@ fn once(case: &Case) -> Run {
         if frame >= WARM_UP {
             times.iter_mut().zip([write, copy, update]).for_each(|(times, time)| times.push(time));
             if frame % 8 == 0 {
+                reads.push(seconds(1, || reader.run()));
                 queries.iter_mut().for_each(|query| query.run(&scene, &load.boxes));
             }
         }
     }
-    Run { times, queries, scene }
+    Run { times, reads, queries, scene }
 }
 
 /// A view's answers: each leaf that its frustum meets is seen in full.

@@ -27,13 +27,15 @@ impl Table {
 }
 
 /// The columns by number of objects.
-pub const BY_NUMBER: [&str; 14] = [
+pub const BY_NUMBER: [&str; 16] = [
     "objects",
     "moving",
     "update, µs",
     "/ write",
     "/ copy",
     "/ scan",
+    "ns a mover",
+    "/ reads",
     "% of a frame",
     "worst / median",
     "last / first",
@@ -55,13 +57,15 @@ pub fn by_number(row: &Row) -> Vec<String> {
 }
 
 /// The columns by manner of moving.
-pub const BY_MANNER: [&str; 13] = [
+pub const BY_MANNER: [&str; 15] = [
     "manner",
     "objects",
     "update, µs",
     "/ write",
     "/ copy",
     "/ scan",
+    "ns a mover",
+    "/ reads",
     "% of a frame",
     "straddling, %",
     "movers leaving, %",
@@ -81,13 +85,16 @@ pub fn by_manner(row: &Row) -> Vec<String> {
     cells
 }
 
-fn update(row: &Row) -> [String; 5] {
+fn update(row: &Row) -> [String; 7] {
     let over = |what: f64| format!("{:.2}", row.update / what);
+    let moved = |text: String| if row.case.moving > 0.0 { text } else { "–".to_owned() };
     [
         format!("{:.1}", row.update * 1e6),
-        if row.case.moving > 0.0 { over(row.write) } else { "–".to_owned() },
+        moved(over(row.write)),
         over(row.copy),
         over(row.scan[0]),
+        moved(format!("{:.1}", row.update * 1e9 / (row.case.count as f64 * row.case.moving))),
+        moved(over(row.reads)),
         format!("{:.3}", 100.0 * row.update / FRAME),
     ]
 }

@@ -1,9 +1,13 @@
-//! What the tree is measured against, in the same process: a frustum test over all boxes and a
-//! copy of them.
+//! What the tree is measured against, in the same process: a frustum test over all boxes, a copy of
+//! them, and reading those of the movers in no order.
+
+use std::hint::black_box;
 
 use glam::{Mat4, Vec4};
 use pulp::f32x16;
 use pulp::x86::V4;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
 use tercet::geom::{Aabb, View};
 
 const LANES: usize = 16;
@@ -116,4 +120,36 @@ fn test(block: &[[f32; LANES]; 6], planes: &[Plane; 6]) -> u16 {
 /// Copies all boxes: what *memcpy* costs.
 pub fn copy(from: &[Aabb], to: &mut [Aabb]) {
     to.copy_from_slice(from);
+}
+
+/// Half a line of memory for each mover, read in no order: what nobody can do without who is told of boxes
+/// in the app's order and keeps them by where they are.
+pub struct Reads {
+    halves: Vec<Half>,
+    order: Vec<u32>,
+}
+
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+struct Half([f32; 8]);
+
+impl Reads {
+    pub fn new(movers: usize) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        let mut order: Vec<u32> = (0..movers as u32).collect();
+        for last in (1..movers).rev() {
+            order.swap(last, rng.next_u64() as usize % (last + 1));
+        }
+        Self { halves: vec![Half([1.0; 8]); movers], order }
+    }
+
+    /// Reads all.
+    pub fn run(&self) {
+        let mut sum = [0.0; 8];
+        for &mover in &self.order {
+            let Half(half) = &self.halves[mover as usize];
+            sum.iter_mut().zip(half).for_each(|(sum, &x)| *sum += x);
+        }
+        black_box(sum);
+    }
 }

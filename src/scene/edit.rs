@@ -1,6 +1,6 @@
 //! Direct edits: insert, move, remove.
 
-use glam::Vec3A;
+use glam::Vec4;
 use hecs::Entity;
 
 use super::Scene;
@@ -30,16 +30,28 @@ impl Scene {
     /// Moves many objects, in time proportional to their number: for apps that know what moved.
     /// Returns how many handles were no longer valid. The update is included.
     pub fn sync_moved(&mut self, moved: impl IntoIterator<Item = (ObjectId, Aabb)>) -> usize {
+        let mut moved = moved.into_iter();
         let mut stale = 0;
-        for (id, bounds) in moved {
-            if self.tape.is_none() && self.objects.is_plain(id) && is_surely_valid(&bounds) {
-                self.tree.set_bounds(id.slot() as u32, &bounds);
-            } else if !self.set_bounds(id, bounds) {
+        while let Some((id, bounds)) = self.take_plain(&mut moved) {
+            if !self.set_bounds(id, bounds) {
                 stale += 1;
             }
         }
         self.update();
         stale
+    }
+
+    /// Moves objects that need no closer look, up to the first that does: that one is returned.
+    #[inline]
+    fn take_plain(&mut self, moved: &mut impl Iterator<Item = (ObjectId, Aabb)>) -> Option<(ObjectId, Aabb)> {
+        if self.tape.is_some() {
+            return moved.next();
+        }
+        let (objects, mut newest) = (self.objects.plain(), self.tree.newest());
+        moved.find(|(id, bounds)| {
+            let plain = objects.has(*id) && is_surely_valid(bounds);
+            !(plain && newest.set(id.slot() as u32, bounds))
+        })
     }
 
     /// Changes an object's optional components; false if the handle is no longer valid. O(depth).
@@ -69,6 +81,7 @@ impl Scene {
         self.note(|| SceneEdit::SetTraits { id, bounds, traits });
         self.objects.set_traits(slot, traits);
         self.set_slot_bounds(slot, bounds);
+        self.tree.set_tag(slot, self.objects.tag(slot));
     }
 
     /// Gives an object a box. It is not taken down here.
@@ -93,6 +106,7 @@ impl Scene {
         if self.objects.place(slot) == Place::Tree {
             self.tree.remove(slot);
         }
+        self.mirror.unbind(self.objects.entity(slot), slot);
         self.objects.remove(slot);
         self.pending += 1;
     }
@@ -109,6 +123,7 @@ impl Scene {
             Place::Tree
         };
         self.objects.set_place(slot, place);
+        self.tree.set_tag(slot, self.objects.tag(slot));
     }
 }
 
@@ -116,9 +131,10 @@ impl Scene {
 /// infinite, so that its corners are finite and in order. A box larger than f32 can say is not
 /// certain.
 #[inline]
-fn is_surely_valid(bounds: &Aabb) -> bool {
-    let size = Vec3A::from(bounds.max) - Vec3A::from(bounds.min);
-    (size.cmpge(Vec3A::ZERO) & size.cmple(Vec3A::MAX)).all()
+fn is_surely_valid(Aabb { min, max }: &Aabb) -> bool {
+    // x is there twice, so that all lanes are of use.
+    let size = Vec4::new(max.x, max.x, max.y, max.z) - Vec4::new(min.x, min.x, min.y, min.z);
+    size.abs().min(Vec4::MAX).cmpeq(size).all()
 }
 
 /// The box with its slack. A slack that is not a length makes the box bad, not smaller.

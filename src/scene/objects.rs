@@ -55,6 +55,18 @@ pub(crate) struct Objects {
     always_at: Vec<u32>,
 }
 
+/// The objects in the tree whose boxes need no slack.
+#[derive(Clone, Copy)]
+pub(crate) struct Plain<'a>(&'a [u32]);
+
+impl Plain<'_> {
+    /// Whether a handle is that of one of them.
+    #[inline]
+    pub(crate) fn has(self, id: ObjectId) -> bool {
+        self.0.get(id.slot()) == Some(&id.generation())
+    }
+}
+
 impl Objects {
     pub(crate) fn insert(&mut self, entity: Entity, traits: Traits) -> ObjectId {
         let slot = self.free.pop().unwrap_or_else(|| {
@@ -141,16 +153,18 @@ impl Objects {
             && (state & BATCH == 0 || Some(self.batch[s]) == traits.batch)
     }
 
-    /// Whether a slot is an entity's, in the tree, and without any traits.
-    #[inline]
-    pub(crate) fn is_bare(&self, slot: u32, entity: Entity) -> bool {
-        self.state[slot as usize] == Place::Tree as State && self.entity[slot as usize] == entity
+    /// What the tree is to know an object by: its entity's generation, if it is there and has no traits,
+    /// and else 0. Where the slot is the entity's by its id, that tells all that an entity without traits
+    /// is compared by.
+    pub(crate) fn tag(&self, slot: u32) -> u32 {
+        let is_bare = self.state[slot as usize] == Place::Tree as State;
+        if is_bare { tag_of(self.entity[slot as usize]) } else { 0 }
     }
 
-    /// Whether a handle is that of an object in the tree whose box needs no slack: the common case.
+    /// The objects in the tree whose boxes need no slack: the common case.
     #[inline]
-    pub(crate) fn is_plain(&self, id: ObjectId) -> bool {
-        self.generation.get(id.slot()) == Some(&id.generation())
+    pub(crate) fn plain(&self) -> Plain<'_> {
+        Plain(&self.generation)
     }
 
     pub(crate) fn place(&self, slot: u32) -> Place {
@@ -213,6 +227,12 @@ impl Objects {
     }
 }
 
+/// An entity's generation; it is never 0.
+#[inline(always)]
+pub(crate) fn tag_of(entity: Entity) -> u32 {
+    (entity.to_bits().get() >> 32) as u32
+}
+
 /// The traits' share of a state.
 fn state_of(traits: &Traits) -> State {
     let flag = |bit, is_set| if is_set { bit } else { 0 };
@@ -251,9 +271,9 @@ mod tests {
         let mut id = objects.id(0);
         for _ in 0..10 {
             assert!(given.insert(id), "{id:?} was given out before");
-            assert!(id.generation() < SPECIAL - 1 && objects.is_plain(id));
+            assert!(id.generation() < SPECIAL - 1 && objects.plain().has(id));
             objects.remove(objects.slot(id).expect("it is there"));
-            assert!(given.iter().all(|&old| objects.slot(old).is_none() && !objects.is_plain(old)));
+            assert!(given.iter().all(|&old| objects.slot(old).is_none() && !objects.plain().has(old)));
             id = objects.insert(Entity::DANGLING, Traits::default());
         }
         assert_eq!((objects.slot_bound(), objects.len()), (2, 1), "one slot was retired");

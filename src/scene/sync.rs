@@ -7,7 +7,7 @@ use hecs::{Entity, Or, With, Without, World};
 use super::Scene;
 use super::components::{Batch, Bounds, BoundsF64, Mobility, NeverCull, NotOccluder, Slack, Traits};
 use super::edit::grown;
-use super::objects::Place;
+use super::objects::{Place, tag_of};
 use crate::geom::Aabb;
 
 /// What a [`Scene::sync`] found.
@@ -50,7 +50,7 @@ const NONE: u32 = u32::MAX;
 /// Which object stands for which entity.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Mirror {
-    /// Slot by `Entity::id`.
+    /// Slot by `Entity::id`: its object is of that id.
     slot_of: Vec<u32>,
     /// By slot: the last search for removed entities that found its own.
     seen: Vec<u32>,
@@ -75,6 +75,14 @@ impl Mirror {
         }
         self.slot_of[index] = slot;
         self.count += 1;
+    }
+
+    /// Forgets an entity whose object is removed, if this slot stands for it.
+    pub(super) fn unbind(&mut self, entity: Entity, slot: u32) {
+        if self.slot_of(entity) == Some(slot) {
+            self.slot_of[entity.id() as usize] = NONE;
+            self.count -= 1;
+        }
     }
 
     /// Records that the entity of its slot is there.
@@ -107,13 +115,12 @@ impl Scene {
     pub fn sync(&mut self, world: &World) -> SyncReport {
         let start = Instant::now();
         let mut report = SyncReport::default();
-        let mut found = 0;
         // Most entities have bounds alone, and most of those stay where they are.
-        for (entity, Bounds(bounds)) in world.query::<Without<(Entity, &Bounds), AnyOptional<'_>>>().iter() {
-            found += 1;
-            if !self.is_unchanged(entity, bounds) {
-                self.sync_one(entity, *bounds, Traits::default(), &mut report);
-            }
+        let mut bare = world.query::<Without<(Entity, &Bounds), AnyOptional<'_>>>();
+        let mut bare = bare.iter();
+        let mut found = bare.len();
+        while let Some((entity, Bounds(bounds))) = self.find_changed(&mut bare) {
+            self.sync_one(entity, *bounds, Traits::default(), &mut report);
         }
         let mut others = world.query::<With<(Entity, &Bounds, Optional<'_>), AnyOptional<'_>>>();
         for (entity, Bounds(bounds), optional) in others.iter() {
@@ -138,11 +145,17 @@ impl Scene {
         report
     }
 
-    /// Whether an entity with nothing but its bounds is in the tree with this very box.
+    /// The next of entities with nothing but their bounds that is not surely in the tree with this very
+    /// box.
     #[inline]
-    fn is_unchanged(&self, entity: Entity, bounds: &Aabb) -> bool {
-        self.mirror.slot_of(entity).is_some_and(|slot| {
-            self.objects.is_bare(slot, entity) && self.tree.aabb_of(slot) == Some(*bounds)
+    fn find_changed<'a>(
+        &self,
+        bare: &mut impl Iterator<Item = (Entity, &'a Bounds)>,
+    ) -> Option<(Entity, &'a Bounds)> {
+        let (slot_of, tagged) = (&self.mirror.slot_of[..], self.tree.tagged());
+        bare.find(|(entity, Bounds(bounds))| {
+            let slot = slot_of.get(entity.id() as usize);
+            !slot.is_some_and(|&slot| tagged.has(slot, tag_of(*entity), bounds))
         })
     }
 
@@ -151,7 +164,7 @@ impl Scene {
         let slot = known.filter(|&slot| {
             let same = self.objects.entity(slot) == entity;
             if !same {
-                self.unbind(entity.id(), slot, report);
+                self.remove_gone(slot, report);
             }
             same
         });
@@ -200,22 +213,16 @@ impl Scene {
             if slot == NONE {
                 continue;
             }
-            let seen = self.mirror.seen.get(slot as usize) == Some(&self.mirror.tick);
-            if !seen || self.objects.entity(slot).id() != index as u32 {
-                self.unbind(index as u32, slot, report);
+            if self.mirror.seen.get(slot as usize) != Some(&self.mirror.tick) {
+                self.remove_gone(slot, report);
             }
         }
     }
 
-    /// Forgets which slot stood for an entity id, and removes the object if it is still of that
-    /// id: the app may have removed it directly, and the slot be another's by now.
-    fn unbind(&mut self, id: u32, slot: u32, report: &mut SyncReport) {
-        self.mirror.slot_of[id as usize] = NONE;
-        self.mirror.count -= 1;
-        if self.objects.entity(slot).id() == id {
-            self.remove_slot(slot);
-            report.removed += 1;
-        }
+    /// Removes the object of an entity that is gone.
+    fn remove_gone(&mut self, slot: u32, report: &mut SyncReport) {
+        self.remove_slot(slot);
+        report.removed += 1;
     }
 }
 
@@ -226,5 +233,35 @@ fn traits((mobility, never_cull, not_occluder, slack, batch): Optional<'_>) -> T
         not_occluder: not_occluder.is_some(),
         slack: slack.map_or(0.0, |s| s.0),
         batch: batch.copied(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::scene::SceneConfig;
+
+    /// Nothing of an entity but its components changes: the short way, by its tag, must not be taken.
+    #[test]
+    fn what_comes_and_goes_while_its_entity_stands_still_is_found() {
+        let (mut world, mut scene) = (World::new(), Scene::new(SceneConfig::default()));
+        let good = Bounds(Aabb::new(Vec3::ZERO, Vec3::ONE));
+        let entity = world.spawn((good,));
+        let slot = scene.sync(&world).spawned as u32 - 1;
+        assert!(scene.find_changed(&mut [(entity, &good)].into_iter()).is_none(), "the short way");
+        for _ in 0..2 {
+            world.insert_one(entity, NotOccluder).expect("an entity");
+            assert_eq!(scene.sync(&world).moved, 1);
+            assert!(!scene.objects.is_occluder(slot));
+            world.remove_one::<NotOccluder>(entity).expect("an entity");
+            assert_eq!(scene.sync(&world).moved, 1);
+            assert!(scene.objects.is_occluder(slot));
+            world.insert_one(entity, Bounds(Aabb::EMPTY)).expect("an entity");
+            assert_eq!(scene.sync(&world).bad, 1);
+            world.insert_one(entity, good).expect("an entity");
+            assert_eq!((scene.sync(&world).bad, scene.objects.place(slot)), (0, Place::Tree));
+        }
     }
 }

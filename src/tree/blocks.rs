@@ -14,19 +14,20 @@
 //! Objects that keep moving gather at the front of their run, so that most blocks are of movers
 //! alone or of objects that stand still: the latter are not touched.
 
+use glam::Vec4;
+
 use super::block::{Block, LANES, lanes};
 use super::gather::Words;
 use super::hull::Hull;
 use super::runs::{FreeRuns, Run};
+use super::stale::Stale;
 use crate::geom::Aabb;
+use crate::query::software::prefetch;
 
 /// No object, no node, no block.
 pub(crate) const NONE: u32 = u32::MAX;
 /// An object that has a box, but no lane yet.
 const WAITING: u32 = u32::MAX - 1;
-
-/// Blocks that are skipped at once where nothing has moved.
-const REGION: usize = 64;
 
 /// The arena of blocks, with the way from an object to its lane.
 #[derive(Clone, Debug, Default)]
@@ -36,13 +37,11 @@ pub(crate) struct Blocks {
     pub(super) hulls: Vec<Hull>,
     /// The node that each block belongs to.
     pub(super) owner: Vec<u32>,
-    /// 1 for a block of which any object has a new box since the last refresh, else 0.
-    pub(super) stale: Vec<u8>,
-    /// Whether there is any such block.
-    pub(super) any_stale: bool,
+    /// The blocks of which any object has a new box since the last refresh.
+    pub(super) stale: Stale,
     /// What the last refresh of each block found.
     pub(super) news: Vec<News>,
-    free: FreeRuns,
+    pub(super) free: FreeRuns,
     /// By object slot.
     pub(super) known: Vec<Known>,
 }
@@ -50,6 +49,8 @@ pub(crate) struct Blocks {
 /// What the refresh of a block found: a bit for each lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct News {
+    /// How many have moved.
+    pub(super) count: u16,
     /// It moved.
     pub(super) moved: u16,
     /// It moved, and had the time before.
@@ -58,18 +59,54 @@ pub(super) struct News {
     pub(super) out: u16,
 }
 
-/// What is known of an object: its newest box, and in the owner's word where it is (block × 16 +
-/// lane; [`NONE`] for an object that is not in the tree, or [`WAITING`]).
+/// What is known of an object: its newest box, and where it is (block × 16 + lane; [`NONE`] for an object
+/// that is not in the tree, or [`WAITING`]).
 type Known = Words;
 
-impl Known {
-    #[inline(always)]
-    fn location(&self) -> u32 {
-        self.owners()
-    }
+/// The newest boxes, taken apart: what is written to one of the arrays cannot change where the others
+/// are, and a loop need not look.
+pub(crate) struct Newest<'a> {
+    known: &'a mut [Known],
+    stale: &'a mut [u8],
+    any_stale: &'a mut bool,
+}
 
-    fn set_location(&mut self, location: u32) {
-        self.set_owners(location);
+impl Newest<'_> {
+    /// Notes the new box of an object that has a lane; false for another one. O(1).
+    #[inline(always)]
+    pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) -> bool {
+        let Some(known) = self.known.get_mut(slot as usize) else { return false };
+        // Neither NONE nor WAITING is in a block.
+        let Some(stale) = self.stale.get_mut(known.location as usize / LANES) else { return false };
+        known.aabb = *aabb;
+        *stale = 1;
+        *self.any_stale = true;
+        true
+    }
+}
+
+/// The newest boxes, with the objects' tags.
+#[derive(Clone, Copy)]
+pub(crate) struct Tagged<'a>(&'a [Known]);
+
+impl Tagged<'_> {
+    /// Slots that are asked of memory ahead of their turn, should it come: a page of memory, for within one
+    /// the machine asks ahead by itself.
+    const AHEAD: usize = 4096 / size_of::<Known>();
+
+    /// Whether an object has this tag, which is not 0, and this box. O(1), without a branch for each
+    /// coordinate.
+    #[inline(always)]
+    pub(crate) fn has(self, slot: u32, tag: u32, aabb: &Aabb) -> bool {
+        // The middle coordinates are there twice, so that each half is a load.
+        let halves = |Aabb { min, max }: Aabb| {
+            [Vec4::new(min.x, min.y, min.z, max.x), Vec4::new(min.z, max.x, max.y, max.z)]
+        };
+        prefetch(self.0.get((slot as usize).wrapping_add(Self::AHEAD)).unwrap_or(&Known::NOTHING));
+        self.0.get(slot as usize).is_some_and(|known| {
+            let ([a, b], [c, d]) = (halves(known.aabb), halves(*aabb));
+            known.tag == tag && (a.cmpeq(c) & b.cmpeq(d)).all()
+        })
     }
 }
 
@@ -93,7 +130,7 @@ impl Blocks {
 
     /// The newest box of an object, if the tree knows it.
     pub(crate) fn aabb_of(&self, slot: u32) -> Option<Aabb> {
-        self.known.get(slot as usize).filter(|known| known.location() != NONE).map(Words::aabb)
+        self.known.get(slot as usize).filter(|known| known.location != NONE).map(|known| known.aabb)
     }
 
     /// Takes an object's box; its lane is given later.
@@ -107,27 +144,43 @@ impl Blocks {
 
     /// Whether an object has a box, but no lane yet.
     pub(crate) fn is_waiting(&self, slot: u32) -> bool {
-        self.known.get(slot as usize).is_some_and(|known| known.location() == WAITING)
+        self.known.get(slot as usize).is_some_and(|known| known.location == WAITING)
     }
 
     /// Forgets an object that waits for its lane.
     pub(crate) fn renounce(&mut self, slot: u32) {
-        self.known[slot as usize].set_location(NONE);
+        self.known[slot as usize].location = NONE;
+    }
+
+    /// Gives an object that the tree knows a tag.
+    pub(crate) fn set_tag(&mut self, slot: u32, tag: u32) {
+        if let Some(known) = self.known.get_mut(slot as usize) {
+            known.tag = tag;
+        }
+    }
+
+    /// The newest boxes, to look at many.
+    pub(crate) fn tagged(&self) -> Tagged<'_> {
+        Tagged(&self.known)
     }
 
     /// Notes the new box of an object that the tree knows. O(1), and no block is touched.
-    #[inline(always)]
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) {
         let Some(known) = self.known.get_mut(slot as usize) else { return };
-        let location = known.location();
-        if location == NONE {
+        if known.location == NONE {
             return;
         }
-        *known = Known::new(aabb, location);
-        if location != WAITING {
-            self.stale[location as usize / LANES] = 1;
-            self.any_stale = true;
+        known.aabb = *aabb;
+        if known.location != WAITING {
+            self.stale.mark(known.location as usize / LANES);
         }
+    }
+
+    /// The newest boxes, to note many.
+    #[inline(always)]
+    pub(crate) fn newest(&mut self) -> Newest<'_> {
+        let (stale, any_stale) = self.stale.bytes_mut();
+        Newest { known: &mut self.known, stale, any_stale }
     }
 
     /// Adds an object to a run. Amortised O(1).
@@ -153,7 +206,7 @@ impl Blocks {
         hole = self.fill_hole(hole, run.location(run.len));
         self.blocks[hole / LANES].put(hole % LANES, NONE, &Aabb::EMPTY);
         self.measure(hole / LANES);
-        self.known[slot as usize].set_location(NONE);
+        self.known[slot as usize].location = NONE;
         if run.len == 0 {
             self.release(run);
         } else if run.is_sparse() {
@@ -192,7 +245,7 @@ impl Blocks {
         self.blocks.reserve_exact(more);
         self.hulls.reserve_exact(more);
         self.owner.reserve_exact(more);
-        self.stale.reserve_exact(more);
+        self.stale.reserve(more);
         self.news.reserve_exact(more);
     }
 
@@ -201,7 +254,7 @@ impl Blocks {
         self.blocks[run.used()].fill(Block::EMPTY);
         self.hulls[run.used()].fill(Hull::EMPTY);
         // Of a block that has run empty too: what it was told before was its node's business.
-        self.stale[run.all()].fill(0);
+        self.stale.clear(run.all());
         self.news[run.all()].fill(News::default());
         self.free.put(*run);
         *run = Run::EMPTY;
@@ -217,40 +270,28 @@ impl Blocks {
         self.of(run).flat_map(|(block, held)| lanes(held).map(|lane| (block.slots[lane], block.aabb(lane))))
     }
 
-    /// Lists the blocks whose objects have new boxes, in order, and holds them for refreshed. A look
-    /// at a byte for every block.
-    pub(super) fn take_stale(&mut self, list: &mut Vec<u32>) {
-        for (region, stale) in self.stale.chunks_mut(REGION).enumerate() {
-            if stale.iter().fold(0, |any, &stale| any | stale) == 0 {
-                continue;
-            }
-            // Eight at a time: which ones are stale is hard to foretell, how many in eight is easier.
-            for (eight, stale) in stale.chunks_mut(8).enumerate() {
-                let mut bytes = [0; 8];
-                bytes[..stale.len()].copy_from_slice(stale);
-                stale.fill(0);
-                let mut word = u64::from_le_bytes(bytes);
-                while word != 0 {
-                    list.push((region * REGION + eight * 8) as u32 + word.trailing_zeros() / 8);
-                    word &= word - 1;
-                }
-            }
-        }
-    }
-
     /// The box around the objects of a run.
+    #[inline(always)]
     pub(super) fn around(&self, run: Run) -> Aabb {
-        let mut all = Hull::EMPTY;
-        for hull in &self.hulls[run.used()] {
-            all.unite(hull);
+        // By turns in two, so that one union need not wait for the other.
+        let (mut all, mut other) = (Hull::EMPTY, Hull::EMPTY);
+        let (pairs, last) = self.hulls[run.used()].as_chunks::<2>();
+        for [one, two] in pairs {
+            all.unite(one);
+            other.unite(two);
         }
+        last.iter().for_each(|hull| all.unite(hull));
+        all.unite(&other);
         all.aabb()
     }
 
     /// Memory held, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let block = size_of::<Block>() + size_of::<Hull>() + size_of::<u32>() + 1 + size_of::<News>();
-        self.blocks.capacity() * block + self.known.capacity() * size_of::<Known>() + self.free.bytes()
+        let block = size_of::<Block>() + size_of::<Hull>() + size_of::<u32>() + size_of::<News>();
+        self.blocks.capacity() * block
+            + self.stale.bytes()
+            + self.known.capacity() * size_of::<Known>()
+            + self.free.bytes()
     }
 
     fn item(&self, location: usize) -> (u32, Aabb) {
@@ -260,7 +301,7 @@ impl Blocks {
 
     fn put(&mut self, location: usize, slot: u32, aabb: &Aabb) {
         self.blocks[location / LANES].put(location % LANES, slot, aabb);
-        self.known[slot as usize].set_location(location as u32);
+        self.known[slot as usize].location = location as u32;
     }
 
     /// Moves an object to the lane of one that is gone; returns the lane that it leaves.
@@ -276,7 +317,7 @@ impl Blocks {
 
     /// What an object has still to be refreshed by goes with it.
     fn follow(&mut self, from: usize, to: usize) {
-        self.stale[to / LANES] |= self.stale[from / LANES];
+        self.stale.follow(from / LANES, to / LANES);
     }
 
     fn measure(&mut self, block: usize) {
@@ -284,7 +325,7 @@ impl Blocks {
     }
 
     fn location(&self, slot: u32) -> Option<usize> {
-        self.known.get(slot as usize).map(|known| known.location() as usize).filter(|&l| l < WAITING as usize)
+        self.known.get(slot as usize).map(|known| known.location as usize).filter(|&l| l < WAITING as usize)
     }
 
     /// Moves a run to one of another class, which must hold its objects.
@@ -295,11 +336,11 @@ impl Blocks {
         for (from, to) in run.used().zip(new.all()) {
             self.blocks[to] = self.blocks[from];
             self.hulls[to] = self.hulls[from];
-            self.stale[to] = self.stale[from];
+            self.stale.follow(from, to);
             self.news[to] = self.news[from];
             for (lane, &slot) in self.blocks[to].slots.iter().enumerate() {
                 if slot != NONE {
-                    self.known[slot as usize].set_location((to * LANES + lane) as u32);
+                    self.known[slot as usize].location = (to * LANES + lane) as u32;
                 }
             }
         }
@@ -314,7 +355,7 @@ impl Blocks {
             grow(&mut self.blocks, total, Block::EMPTY);
             grow(&mut self.hulls, total, Hull::EMPTY);
             grow(&mut self.owner, total, NONE);
-            grow(&mut self.stale, total, 0);
+            self.stale.set_len(total);
             grow(&mut self.news, total, News::default());
             run
         });

@@ -15,49 +15,35 @@ use super::block::{Block, LANES};
 use super::hull::Hull;
 use crate::geom::Aabb;
 
-/// The newest box of an object in half a line of memory, which two stores write: its least and its
-/// greatest coordinates, then the bits of a word that is the owner's.
+/// The newest box of an object in half a line of memory, with two words of its owners.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Words([Vec4; 2]);
+pub(super) struct Words {
+    /// The box.
+    pub(super) aabb: Aabb,
+    /// Where the object is.
+    pub(super) location: u32,
+    /// What the scene knows it by.
+    pub(super) tag: u32,
+}
 
 impl Words {
     /// No box: the empty one.
-    pub(super) const NOTHING: Self = {
-        let (low, high) = (f32::INFINITY, f32::NEG_INFINITY);
-        Self([Vec4::new(low, low, low, high), Vec4::new(high, high, f32::from_bits(u32::MAX), 0.0)])
-    };
+    pub(super) const NOTHING: Self = Self::new(&Aabb::EMPTY, u32::MAX);
 
-    /// The words of a box, and the owner's.
-    #[inline(always)]
-    pub(super) fn new(aabb: &Aabb, owners: u32) -> Self {
-        let Aabb { min, max } = *aabb;
-        let near = Vec4::new(min.x, min.y, min.z, max.x);
-        Self([near, Vec4::new(max.y, max.z, f32::from_bits(owners), 0.0)])
+    /// A box that is somewhere, without a tag.
+    pub(super) const fn new(aabb: &Aabb, location: u32) -> Self {
+        Self { aabb: *aabb, location, tag: 0 }
     }
 
-    /// The box.
-    #[inline(always)]
-    pub(super) fn aabb(&self) -> Aabb {
-        let [near, far] = self.0;
-        Aabb::new(near.truncate(), Vec3::new(near.w, far.x, far.y))
-    }
-
-    /// The owner's word.
-    #[inline(always)]
-    pub(super) fn owners(&self) -> u32 {
-        self.0[1].z.to_bits()
-    }
-
-    /// Changes the owner's word.
-    pub(super) fn set_owners(&mut self, owners: u32) {
-        self.0[1].z = f32::from_bits(owners);
-    }
-
-    /// Half of the words: one load.
+    /// Half of the words: one load, for they are in their order.
     #[inline(always)]
     fn half(&self, half: usize) -> [f32; 4] {
-        self.0[half].to_array()
+        let Self { aabb: Aabb { min, max }, location, tag } = *self;
+        match half {
+            0 => [min.x, min.y, min.z, max.x],
+            _ => [max.y, max.z, f32::from_bits(location), f32::from_bits(tag)],
+        }
     }
 }
 
@@ -271,7 +257,7 @@ mod tests {
                 assert!(block.aabb(lane).is_empty() && (found.moved | found.out) & 1 << lane == 0);
                 continue;
             }
-            let (was, is) = (old.aabb(lane), newest[block.slots[lane] as usize].aabb());
+            let (was, is) = (old.aabb(lane), newest[block.slots[lane] as usize].aabb);
             around = around.union(&is);
             assert_eq!(block.aabb(lane), is);
             assert_eq!(found.moved & 1 << lane != 0, was != is, "lane {lane}");

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::blocks::NONE;
+use super::blocks::{NONE, Newest, Tagged};
 use super::config::Straddlers;
 use super::node::Role;
 use super::refit::{CONTENT, REGROUPED};
@@ -20,9 +20,24 @@ impl Tree {
 
     /// Gives an object that the tree holds a new box, which must be valid; the next
     /// [`Tree::update`] looks whether it stays in its cell. O(1).
-    #[inline(always)]
     pub(crate) fn set_bounds(&mut self, slot: u32, aabb: &Aabb) {
         self.blocks.set(slot, aabb);
+    }
+
+    /// The same for many objects.
+    #[inline(always)]
+    pub(crate) fn newest(&mut self) -> Newest<'_> {
+        self.blocks.newest()
+    }
+
+    /// Gives an object a tag, by which its owner knows it: 0 when it is inserted. O(1).
+    pub(crate) fn set_tag(&mut self, slot: u32, tag: u32) {
+        self.blocks.set_tag(slot, tag);
+    }
+
+    /// The objects' newest boxes and tags, to look at many.
+    pub(crate) fn tagged(&self) -> Tagged<'_> {
+        self.blocks.tagged()
     }
 
     /// Takes an object out. O(depth).

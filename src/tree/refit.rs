@@ -67,6 +67,7 @@ impl Tree {
         self.build_crowded();
         self.collapse_thinned();
         self.shrink_root();
+        self.blocks.compact(&mut self.nodes.run);
         self.refit();
     }
 

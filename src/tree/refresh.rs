@@ -32,11 +32,11 @@ impl Tree {
     /// the objects that have left. O(blocks with moved objects), and a look at a byte for every
     /// block without, unless none has any.
     pub(super) fn refresh(&mut self) {
-        if !std::mem::take(&mut self.blocks.any_stale) {
+        self.blocks.stale.take(&mut self.stale);
+        if self.stale.is_empty() {
             return;
         }
         let mut stale = std::mem::take(&mut self.stale);
-        self.blocks.take_stale(&mut stale);
         self.renew(&stale);
         let mut node = NONE;
         let mut moved = 0;
@@ -45,7 +45,7 @@ impl Tree {
                 self.note_moved(node, moved);
                 (node, moved) = (self.blocks.owner[block], 0);
             }
-            moved += self.blocks.news[block].moved.count_ones();
+            moved += u32::from(self.blocks.news[block].count);
             self.list_leavers(block, node);
             self.gather_movers(block, node);
         }
@@ -199,7 +199,8 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
                 (true, 0) => 0,
                 (true, _) => found.out,
             };
-            news[at] = News { moved: found.moved, again: found.moved & news[at].moved, out };
+            let count = found.moved.count_ones() as u16;
+            news[at] = News { count, moved: found.moved, again: found.moved & news[at].moved, out };
         }
     }
 }
