@@ -54,8 +54,7 @@ impl Plan for Groups {
     fn plan(&mut self, cx: &Context<'_>, first: &First, targets: &mut Targets) {
         self.extract(cx, first.objects.iter().copied());
         let Targets { groups, loose } = targets;
-        let is_asked = |id: &ObjectId| first.retest || !first.set.contains(*id);
-        self.emit(cx, |node| groups.push(node), |id| loose.extend(Some(id).filter(is_asked)));
+        self.emit(cx, |node| groups.push(node), |id| loose.extend(Some(id).filter(|&id| first.is_asked(id))));
     }
 
     fn dials(&self) -> Vec<Dial> {

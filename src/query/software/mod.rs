@@ -10,6 +10,7 @@
 //! | `setup`, `raster`, `tiles`, `walk`, `large` | triangles to samples |
 //! | `compact` | small meshes that cover few pixels, all at once |
 //! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
+//! | `seen` | drawing with a note of who showed a sample |
 //! | `count` | answers to questions |
 //! | `kept_frames` | depths of earlier frames, for late questions |
 //! | `sweep` | answers to sweeps, object by object |
@@ -30,6 +31,7 @@ mod layout;
 mod level;
 mod pass;
 mod raster;
+mod seen;
 mod setup;
 mod simd;
 mod sink;
@@ -56,10 +58,11 @@ use super::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::scene::ObjectRef;
-use bands::Bands;
+use bands::{Bands, Work};
 use depth::Depth;
 use hi_z::HiZ;
 use kept_frames::{KeptFrame, KeptFrames};
+use seen::Seen;
 use sweep::{Owned, Sweeps};
 
 /// Counters since [`QueryBackend::begin`].
@@ -88,6 +91,15 @@ pub struct SoftwareStats {
     pub flagged: u64,
 }
 
+impl SoftwareStats {
+    fn add(&mut self, calls: usize, work: Work) {
+        self.calls += calls as u64;
+        self.skipped_calls += calls as u64 - work.calls;
+        self.triangles += work.triangles;
+        self.rasterised += work.kept;
+    }
+}
+
 /// The software backend: a depth buffer on the CPU and the questions put to it.
 ///
 /// Triangles are rasterised exactly (top-left rule, pixel centres, 1/256 pixel), on the threads of
@@ -114,6 +126,10 @@ pub struct SoftwareQueries {
     keeps: bool,
     sweeps: Sweeps,
     owned: Owned,
+    /// Whether what is recorded is what the app shows.
+    true_shapes: bool,
+    /// Whose draw calls an attempt consists of, and who recorded none.
+    seen: Seen,
     stats: SoftwareStats,
 }
 
@@ -160,6 +176,8 @@ impl SoftwareQueries {
             keeps: false,
             sweeps: Sweeps::default(),
             owned: Owned::default(),
+            true_shapes: false,
+            seen: Seen::default(),
             stats: SoftwareStats::default(),
         }
     }
@@ -167,6 +185,13 @@ impl SoftwareQueries {
     /// The level in use.
     pub fn level(&self) -> SimdLevel {
         self.simd
+    }
+
+    /// Says whether closures record what the app shows: of each object all that it is, and no stand-ins, such
+    /// as an [`OccluderMesh`](crate::scene::OccluderMesh). Then whoever records something, of which nothing
+    /// shows, can be left out ([`QueryBackend::draws_if_seen`]). False at first: boxes have the last word.
+    pub fn set_true_shapes(&mut self, true_shapes: bool) {
+        self.true_shapes = true_shapes;
     }
 
     /// The depth of the frame so far.
@@ -188,10 +213,7 @@ impl SoftwareQueries {
     /// Draws into the depth of the frame that has begun.
     pub(crate) fn rasterise(&mut self, view: &View, calls: &[DrawCall]) {
         let work = self.bands.rasterise(self.simd, view, calls, self.depth.sinks(&mut self.hi_z));
-        self.stats.calls += calls.len() as u64;
-        self.stats.skipped_calls += calls.len() as u64 - work.calls;
-        self.stats.triangles += work.triangles;
-        self.stats.rasterised += work.kept;
+        self.stats.add(calls.len(), work);
     }
 
     /// Draws what was recorded.
@@ -201,6 +223,23 @@ impl SoftwareQueries {
             self.rasterise(&view, pass.calls());
             (self.view, self.pass) = (Some(view), pass);
         }
+    }
+
+    /// Records what objects draw, and whose it is; returns how many draw calls were there before.
+    fn record_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        mut record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> usize {
+        // What was asked before must not see what is drawn now.
+        self.answer();
+        self.pass.clear();
+        let before = self.owned.calls.len();
+        for object in objects {
+            record(&mut self.pass, std::slice::from_ref(object));
+            self.owned.owners.resize(before + self.pass.calls().len(), object.id);
+        }
+        before
     }
 
     /// Takes a frame's size; what the last one held is gone.
@@ -298,16 +337,30 @@ impl QueryBackend for SoftwareQueries {
     fn draw_objects(
         &mut self,
         objects: &[ObjectRef],
-        mut record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
     ) -> Result<(), Error> {
-        self.answer();
-        self.pass.clear();
-        let before = self.owned.calls.len();
-        for object in objects {
-            record(&mut self.pass, std::slice::from_ref(object));
-            self.owned.owners.resize(before + self.pass.calls().len(), object.id);
-        }
+        self.record_objects(objects, record);
         self.draw_pass();
+        self.pass.drain_into(&mut self.owned.calls);
+        Ok(())
+    }
+
+    /// If it is told true shapes, and the app's picture has its samples where this one has.
+    fn draws_if_seen(&self) -> bool {
+        self.true_shapes && self.view.as_ref().is_some_and(|view| view.samples() == 1)
+    }
+
+    fn draw_if_seen(
+        &mut self,
+        ticket: Ticket,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        let first = self.record_objects(objects, record);
+        if let Some(view) = self.view.take() {
+            self.draw_seen(ticket, &view, first, objects);
+            self.view = Some(view);
+        }
         self.pass.drain_into(&mut self.owned.calls);
         Ok(())
     }
