@@ -8,7 +8,13 @@
 //! this very frame has not found it. V decides what comes first, and nothing else: one of it that has
 //! moved is drawn where it is now, and one that is gone is left out.
 //!
-//! *In parts.* After a cut V hides little, and nearly everything in the frustum would be found. Where more
+//! *By geometry.* Much is hidden whose box is not: the boxes of large and intricate things show what they
+//! do not. Where the backend can tell ([`Action::DrawIfSeen`]), both phases draw from near to far, and each
+//! object only if a sample of it passes the depth test behind all before it: of V that is the paper's *O*, of
+//! U its *D*. What does not show is culled in this frame, and no part of the next V; so V does not lag
+//! behind a fast camera, and nobody need ask for owners or sweep V again.
+//!
+//! *In parts.* Elsewhere: after a cut V hides little, and nearly everything in the frustum would be found. Where more
 //! than half as many objects are found as V has, the nearest of them are drawn first, and the others swept
 //! again behind those; several times, if need be, in parts that double. (Ours. Lee et al. name IOC, which sweeps
 //! between two depths of its hierarchy.)
@@ -29,12 +35,14 @@ use crate::{Counter, Error};
 #[derive(Clone, Debug)]
 pub struct TwoPhase<P> {
     /// Whether an object must own a sample to be drawn first in the next frame; else its box must have
-    /// one in sight. On the CPU to find owners costs about what drawing did, and hardly culls more.
+    /// one in sight. On the CPU to find owners costs about what drawing did, and hardly culls more. What is
+    /// drawn by geometry is known to have shown: then it makes no difference.
     pub occluder_filtering: bool,
     /// Whether only what shows by its geometry is drawn, in both phases, where the backend can tell
     /// ([`Action::DrawIfSeen`]). Then V is what showed, and nobody need ask for owners or sweep V again.
     pub by_geometry: bool,
-    /// In how many parts, at most, many new objects are drawn, each swept behind those before it.
+    /// In how many parts, at most, many new objects are drawn, each swept behind those before it. By geometry
+    /// they need no parts.
     pub parts: u32,
     /// Whether what was visible is drawn from near to far; else by slot, the same in every view.
     pub near_first: bool,
@@ -330,7 +338,11 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 self.occluder_filtering,
                 "draw first only what owned a sample in the last frame",
             ),
-            Dial::new("by_geometry", self.by_geometry, "draw only what shows by its geometry, where that can be told"),
+            Dial::new(
+                "by_geometry",
+                self.by_geometry,
+                "draw only what shows by its geometry, where that can be told",
+            ),
             Dial::new("near_first", self.near_first, "draw what was visible from near to far, not by slot"),
             Dial::new("parts", self.parts, "parts in which many new objects are drawn, at most"),
         ];
@@ -343,7 +355,9 @@ impl<P: Plan> Policy for TwoPhase<P> {
             "occluder_filtering" => {
                 self.occluder_filtering = dial::choice(key, value, &[("true", true), ("false", false)])?;
             }
-            "by_geometry" => self.by_geometry = dial::choice(key, value, &[("true", true), ("false", false)])?,
+            "by_geometry" => {
+                self.by_geometry = dial::choice(key, value, &[("true", true), ("false", false)])?
+            }
             "near_first" => self.near_first = dial::choice(key, value, &[("true", true), ("false", false)])?,
             "parts" => self.parts = dial::number(key, value, 1..=64)?,
             _ if self.plan.set(key, value)? => {}

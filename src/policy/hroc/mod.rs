@@ -11,8 +11,9 @@
 //!   themselves, are tested one by one.
 //! - A group whose box holds the eye, or covers more than a share of the screen (`share`), is opened
 //!   before rays are cast: rays over the whole screen are what the paper names as its weakness.
-//! - The occluders are all of V in the frustum: which of them pass the early depth test while they are
-//!   drawn (*O*) is not known to the host. Without occluder filtering their boxes are swept for it.
+//! - The occluders are those of V that pass the depth test while they are drawn (*O*), where the backend
+//!   tells which these are (`by_geometry`). Elsewhere they are all of V in the frustum; without occluder
+//!   filtering their boxes are swept, to find out which are still visible.
 //!
 //! [`extract`]: extract::Extraction
 
