@@ -21,6 +21,10 @@
 //!
 //! What hides nothing is no part of V: it is asked about in every frame.
 
+mod counts;
+
+use counts::Counts;
+
 use super::plan::{First, Plan, Targets};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
@@ -100,16 +104,6 @@ enum Reply {
     None,
     Found,
     Lost,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Counts {
-    first: u32,
-    groups: u32,
-    loose: u32,
-    sweeps: u32,
-    found: u32,
-    left_out: u32,
 }
 
 /// New objects that are drawn at once in any case; the first part has so many, and each further one
@@ -231,10 +225,13 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 }
                 Stage::SawPart(count) => {
                     self.knows = self.answer == Reply::Found;
-                    let part = self.rest.drain(..count);
-                    let shown = part.filter(|&id| !self.knows || self.found.contains(id));
+                    let store = cx.scene.objects_store();
+                    let (knows, found) = (self.knows, &self.found);
+                    // No answer speaks of what hides nothing: it is drawn.
+                    let is_drawn =
+                        |id: &ObjectId| !knows || found.contains(*id) || !store.is_occluder(id.slot() as u32);
                     let before = self.second.len();
-                    self.second.extend(shown);
+                    self.second.extend(self.rest.drain(..count).filter(is_drawn));
                     self.counts.left_out += (count - (self.second.len() - before)) as u32;
                     self.stage = if self.rest.is_empty() { Stage::AskOwners } else { Stage::SweepRest };
                 }
@@ -318,15 +315,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
     }
 
     fn counters(&self) -> Vec<Counter> {
-        let Counts { first, groups, loose, sweeps, found, left_out } = self.counts;
-        let mut counters = vec![
-            Counter { key: "drawn_first", count: first },
-            Counter { key: "groups", count: groups },
-            Counter { key: "loose", count: loose },
-            Counter { key: "sweeps", count: sweeps },
-            Counter { key: "found", count: found },
-            Counter { key: "left_out", count: left_out },
-        ];
+        let mut counters = self.counts.list();
         counters.extend(self.plan.counters());
         counters
     }

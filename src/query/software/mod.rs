@@ -12,6 +12,7 @@
 //! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
 //! | `seen` | drawing with a note of who showed a sample |
 //! | `count` | answers to questions |
+//! | `stats` | counters |
 //! | `kept_frames` | depths of earlier frames, for late questions |
 //! | `sweep` | answers to sweeps, object by object |
 //! | `visibility` | who owns each pixel of a finished frame |
@@ -35,6 +36,7 @@ mod seen;
 mod setup;
 mod simd;
 mod sink;
+mod stats;
 mod sweep;
 mod tiles;
 mod vertex;
@@ -50,6 +52,7 @@ pub use depth::DepthImage;
 pub use level::SimdLevel;
 pub use pass::{DrawCall, Faces, SoftwarePass};
 pub(crate) use simd::prefetch;
+pub use stats::SoftwareStats;
 pub use sweep::{Pyramid, PyramidLevel};
 pub(crate) use visibility::Snapshot;
 pub use visibility::VisibilityImage;
@@ -58,47 +61,12 @@ use super::{Answer, QueryBackend, Sweep, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::scene::ObjectRef;
-use bands::{Bands, Work};
+use bands::Bands;
 use depth::Depth;
 use hi_z::HiZ;
 use kept_frames::{KeptFrame, KeptFrames};
 use seen::Seen;
 use sweep::{Owned, Sweeps};
-
-/// Counters since [`QueryBackend::begin`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SoftwareStats {
-    /// Draw calls recorded.
-    pub calls: u64,
-    /// Draw calls that were skipped whole: out of view, or behind what was already drawn.
-    pub skipped_calls: u64,
-    /// Triangles of the draw calls that were not skipped.
-    pub triangles: u64,
-    /// Triangles of those that had a sample in their bounding box, whichever side they show, but for
-    /// those of parts that were hidden where they begin. What clipping leaves of a triangle counts by pieces.
-    pub rasterised: u64,
-    /// Boxes asked about.
-    pub boxes: u64,
-    /// Sweeps, but for those about owners.
-    pub sweeps: u64,
-    /// Boxes of nodes that sweeps have tested.
-    pub sweep_nodes: u64,
-    /// Rays that went down the subtrees of groups.
-    pub rays: u64,
-    /// Objects whose own boxes sweeps have tested.
-    pub swept: u64,
-    /// Objects that sweeps have found.
-    pub flagged: u64,
-}
-
-impl SoftwareStats {
-    fn add(&mut self, calls: usize, work: Work) {
-        self.calls += calls as u64;
-        self.skipped_calls += calls as u64 - work.calls;
-        self.triangles += work.triangles;
-        self.rasterised += work.kept;
-    }
-}
 
 /// The software backend: a depth buffer on the CPU and the questions put to it.
 ///
