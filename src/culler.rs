@@ -88,6 +88,10 @@ impl<P: Policy> Culler<P> {
     /// its own, and no state survives from one to the next. Objects that are no occluders come in
     /// the last call. No object is handed out twice.
     ///
+    /// Some policies draw what may be hidden only if something of it shows ([`Action::DrawIfSeen`]), where the
+    /// backend can tell. Then `draw` is called for objects, too, of which nothing shows: they leave no trace,
+    /// and are not among the [`Culler::visible`].
+    ///
     /// # Errors
     /// [`Error::PendingEdits`] if the scene was edited since its last update;
     /// [`Error::CannotBlock`] if the policy needs answers that the backend cannot wait for; and
@@ -175,6 +179,15 @@ impl<P: Policy> Culler<P> {
                     self.drawn.queue_node(scene, &cx, &mut self.stack, node, extent)
                 }
                 Action::DrawObjects(objects) => self.drawn.queue_objects(scene, objects),
+                Action::DrawIfSeen { ticket, objects } if self.divisor == 1 && queries.draws_if_seen() => {
+                    let ticket = self.open.ask(ticket);
+                    self.drawn.flush(queries, &mut draw, &mut stats)?;
+                    self.drawn.draw_if_seen(scene, ticket, objects, queries, &mut draw, &mut stats)?;
+                }
+                Action::DrawIfSeen { ticket, objects } => {
+                    self.drawn.queue_objects(scene, objects);
+                    self.policy.answer(&cx, ticket, Answer::Unknown);
+                }
                 Action::Ask { ticket, boxes, want } => {
                     let ticket = self.open.ask(ticket);
                     if !purse.pays(boxes) {
@@ -205,21 +218,24 @@ impl<P: Policy> Culler<P> {
                 }
                 Action::Wait(wait) => {
                     stats.waves += u32::from(wait == Wait::Block);
-                    let (policy, open) = (&mut self.policy, &mut self.open);
+                    let (policy, open, drawn) = (&mut self.policy, &mut self.open, &mut self.drawn);
                     stats.wait += attempt(&mut failure, || {
                         queries.answers(wait, |ticket, answer| {
                             if let Some(asked) = open.close(ticket) {
+                                drawn.settle(ticket, answer);
                                 policy.answer(&cx, asked, answer);
                             }
                         })
                     });
                     if wait == Wait::Block || failure.is_some() {
+                        drawn.settle_all();
                         open.lost().for_each(|asked| policy.answer(&cx, asked, Answer::Unknown));
                     }
                 }
                 Action::Done => break,
             }
         }
+        self.drawn.settle_all();
         self.drawn.flush(queries, &mut draw, &mut stats)?;
         self.drawn.flush_last(queries, &mut draw, &mut stats)?;
         // Also if asking failed: what was drawn is to be seen.

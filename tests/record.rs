@@ -39,7 +39,9 @@ fn record(policy: Box<dyn Policy>, noted: Box<dyn Policy>, seed: u64) -> (Vec<u8
     let noted = Culler::new(noted);
     let mut recorder = Recorder::new(&mut file, &config, &mut scene, &noted, "a test").expect("a recorder");
     let faults = Faults { lost_device: Some(LOST), room: Some(60), ..Faults::MANY };
-    let mut queries = Logged::new(Faulty::new(SoftwareQueries::new(), faults, seed));
+    let mut software = SoftwareQueries::new();
+    software.set_true_shapes(seed % 2 == 1);
+    let mut queries = Logged::new(Faulty::new(software, faults, seed));
     let mut stage = Stage::new(worlds::random(seed, 150), seed, SCREEN, true);
     let mut shown = Vec::new();
     scene.adapt([&mut eye]);

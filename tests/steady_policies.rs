@@ -34,7 +34,8 @@ fn a_steady_frame_allocates_nothing() {
             check(name, &[]);
         }
         for name in ["roc", "hroc", "hi-z", "hybrid"] {
-            check(name, &[("occluder_filtering", "true")]);
+            check(name, &[("by_geometry", "false")]);
+            check(name, &[("by_geometry", "false"), ("occluder_filtering", "true")]);
         }
         check("chc++", &[("multiqueries", "false"), ("tight", "false")]);
         check("dual-query", &[("order", "visible-first")]);
@@ -54,6 +55,7 @@ fn check(name: &str, dials: &[(&str, &str)]) {
     let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
     let mut eye = Culler::new(policy);
     let mut queries = SoftwareQueries::new();
+    queries.set_true_shapes(true);
     scene.adapt([&mut eye]);
     scene.sync(&world);
     // What a reference is given.

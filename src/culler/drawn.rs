@@ -4,8 +4,8 @@ use super::timed;
 use crate::Error;
 use crate::geom::{Frustum, PlaneMask};
 use crate::policy::{Context, Extent};
-use crate::query::QueryBackend;
-use crate::scene::{ObjectId, ObjectRef, Scene};
+use crate::query::{Answer, QueryBackend, Ticket};
+use crate::scene::{ObjectId, ObjectRef, ObjectSet, Scene};
 use crate::stats::FrameStats;
 use crate::tree::NodeId;
 
@@ -16,6 +16,12 @@ pub(super) struct DrawnList {
     queue: Vec<ObjectRef>,
     /// No occluders: to be drawn last.
     last: Vec<ObjectRef>,
+    /// Drawn if something of them shows; nobody knows yet.
+    tried: Vec<ObjectRef>,
+    /// The question that says it.
+    attempt: Option<Ticket>,
+    /// Of which nothing showed. Depth only grows nearer, so nothing will.
+    hidden: ObjectSet,
     pub(super) visible: Vec<ObjectRef>,
     pub(super) entered: Vec<ObjectRef>,
     previous: Vec<ObjectRef>,
@@ -54,6 +60,9 @@ impl DrawnList {
         self.frame = frame;
         self.queue.clear();
         self.last.clear();
+        self.tried.clear();
+        self.attempt = None;
+        self.hidden.clear();
         self.entered.clear();
         std::mem::swap(&mut self.visible, &mut self.previous);
         self.visible.clear();
@@ -61,20 +70,76 @@ impl DrawnList {
         self.last_drawn.resize(bound, (0, 0));
     }
 
-    /// Queues an object, unless it was queued in this frame before.
+    /// Queues an object, unless it was queued in this frame before, or is known to show nothing.
     pub(super) fn queue(&mut self, scene: &Scene, slot: u32) {
         let store = scene.objects_store();
         let object = store.object(slot);
-        let last = &mut self.last_drawn[slot as usize];
+        if !self.hidden.contains(object.id) && self.note(object) {
+            let list = if store.is_occluder(slot) { &mut self.queue } else { &mut self.last };
+            list.push(object);
+        }
+    }
+
+    /// Notes that an object is drawn in this frame; false if that was known.
+    fn note(&mut self, object: ObjectRef) -> bool {
+        let last = &mut self.last_drawn[object.id.slot()];
         let (generation, frame) = std::mem::replace(last, (object.id.generation(), self.frame));
         if frame == self.frame {
-            return;
+            return false;
         }
         if generation != object.id.generation() || frame == 0 || frame != self.frame.wrapping_sub(1) {
             self.entered.push(object);
         }
-        let list = if store.is_occluder(slot) { &mut self.queue } else { &mut self.last };
-        list.push(object);
+        true
+    }
+
+    /// Draws those of which something shows, of the objects that were not drawn before. Which ones these
+    /// are is known when the answer comes. What hides nothing is queued.
+    pub(super) fn draw_if_seen<B: QueryBackend>(
+        &mut self,
+        scene: &Scene,
+        ticket: Ticket,
+        objects: &[ObjectId],
+        queries: &mut B,
+        draw: &mut impl FnMut(&mut B::Pass, &[ObjectRef]),
+        stats: &mut FrameStats,
+    ) -> Result<(), Error> {
+        self.settle_all();
+        let store = scene.objects_store();
+        for slot in objects.iter().filter_map(|&id| store.slot(id)) {
+            if !store.is_occluder(slot) {
+                self.queue(scene, slot);
+            } else if !self.has(store.id(slot)) && !self.hidden.contains(store.id(slot)) {
+                self.tried.push(store.object(slot));
+            }
+        }
+        self.attempt = Some(ticket);
+        stats.draw += timed(|| queries.draw_if_seen(ticket, &self.tried, &mut *draw))?;
+        Ok(())
+    }
+
+    /// Takes the answer to an attempt to draw, if it is one.
+    pub(super) fn settle(&mut self, ticket: Ticket, answer: Answer<'_>) {
+        if self.attempt == Some(ticket) {
+            if let Answer::Swept(found) = answer {
+                for object in self.tried.extract_if(.., |object| !found.contains(object.id)) {
+                    self.hidden.insert(object.id);
+                }
+            }
+            self.settle_all();
+        }
+    }
+
+    /// What nobody knows of counts as drawn.
+    pub(super) fn settle_all(&mut self) {
+        self.attempt = None;
+        let mut tried = std::mem::take(&mut self.tried);
+        for object in tried.drain(..) {
+            if self.note(object) {
+                self.visible.push(object);
+            }
+        }
+        self.tried = tried;
     }
 
     pub(super) fn queue_objects(&mut self, scene: &Scene, objects: &[ObjectId]) {

@@ -37,7 +37,8 @@ pub enum Why {
     /// The policy sweeps objects.
     Swept {
         /// Drawn: it was found, or drawn first because it was visible in the last frame. Else it was in
-        /// no answer: no sample of its box is in sight, or of that of a group that holds it.
+        /// no answer: no sample of its box is in sight, or of that of a group that holds it, or nothing of it
+        /// showed when it was to be drawn.
         drawn: bool,
     },
     /// Culled: its box lies outside the frustum.
@@ -184,7 +185,7 @@ impl fmt::Display for Why {
             Self::Swept { drawn: true } => {
                 write!(f, "drawn: a sweep found it, or it was visible in the last frame")
             }
-            Self::Swept { drawn: false } => write!(f, "culled: no sweep found it"),
+            Self::Swept { drawn: false } => write!(f, "culled: no sweep found it, or nothing of it showed"),
             Self::Outside => write!(f, "culled: it is outside the view"),
             Self::NoSample(node) => write!(f, "culled: {node} is too small to cover a pixel's sample"),
             Self::Hidden(node) => write!(f, "culled: nothing of {node} was visible"),

@@ -124,6 +124,17 @@ pub enum Action<'p> {
     Draw(NodeId, Extent),
     /// Draw these objects.
     DrawObjects(&'p [ObjectId]),
+    /// Draw those of these objects of which something shows, by their geometry
+    /// ([`QueryBackend::draw_if_seen`](crate::query::QueryBackend::draw_if_seen)). Answered by
+    /// [`Answer::Swept`] with those that are drawn; by [`Answer::Unknown`] if all of them are: at once if the
+    /// backend cannot tell, or if depth is coarser than the picture, so that thin things would slip through.
+    /// What hides nothing is drawn last, in any case, and is in no answer.
+    DrawIfSeen {
+        /// Names the attempt in its answer.
+        ticket: Ticket,
+        /// The objects, in the order of drawing.
+        objects: &'p [ObjectId],
+    },
     /// Ask about boxes.
     Ask {
         /// Names the question in its answer.

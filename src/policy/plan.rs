@@ -44,12 +44,19 @@ pub trait Plan: Debug + Default + Send + Sync {
 /// The objects of the first phase.
 #[derive(Clone, Debug, Default)]
 pub struct First {
-    /// In the order of drawing.
+    /// Those that were drawn, in the order of drawing.
     pub objects: Vec<ObjectId>,
-    /// The same.
+    /// The same, and those that were left out because nothing of them showed.
     pub set: ObjectSet,
     /// Whether the sweep must say which of them are still visible: nobody else will.
     pub retest: bool,
+}
+
+impl First {
+    /// Whether there is something to find out about an object.
+    pub fn is_asked(&self, id: ObjectId) -> bool {
+        self.retest || !self.set.contains(id)
+    }
 }
 
 /// What a sweep is about.

@@ -8,12 +8,22 @@
 //! this very frame has not found it. V decides what comes first, and nothing else: one of it that has
 //! moved is drawn where it is now, and one that is gone is left out.
 //!
-//! *In parts.* After a cut V hides little, and nearly everything in the frustum would be found. Where more
+//! *By geometry.* Much is hidden whose box is not: the boxes of large and intricate things show what they
+//! do not. Where the backend can tell ([`Action::DrawIfSeen`]), both phases draw from near to far, and each
+//! object only if a sample of it passes the depth test behind all before it: of V that is the paper's *O*, of
+//! U its *D*. What does not show is culled in this frame, and no part of the next V; so V does not lag
+//! behind a fast camera, and nobody need ask for owners or sweep V again.
+//!
+//! *In parts.* Elsewhere: after a cut V hides little, and nearly everything in the frustum would be found. Where more
 //! than half as many objects are found as V has, the nearest of them are drawn first, and the others swept
 //! again behind those; several times, if need be, in parts that double. (Ours. Lee et al. name IOC, which sweeps
 //! between two depths of its hierarchy.)
 //!
 //! What hides nothing is no part of V: it is asked about in every frame.
+
+mod counts;
+
+use counts::Counts;
 
 use super::plan::{First, Plan, Targets};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
@@ -29,9 +39,14 @@ use crate::{Counter, Error};
 #[derive(Clone, Debug)]
 pub struct TwoPhase<P> {
     /// Whether an object must own a sample to be drawn first in the next frame; else its box must have
-    /// one in sight. On the CPU to find owners costs about what drawing did, and hardly culls more.
+    /// one in sight. On the CPU to find owners costs about what drawing did, and hardly culls more. What is
+    /// drawn by geometry is known to have shown: then it makes no difference.
     pub occluder_filtering: bool,
-    /// In how many parts, at most, many new objects are drawn, each swept behind those before it.
+    /// Whether only what shows by its geometry is drawn, in both phases, where the backend can tell
+    /// ([`Action::DrawIfSeen`]). Then V is what showed, and nobody need ask for owners or sweep V again.
+    pub by_geometry: bool,
+    /// In how many parts, at most, many new objects are drawn, each swept behind those before it. By geometry
+    /// they need no parts.
     pub parts: u32,
     /// Whether what was visible is drawn from near to far; else by slot, the same in every view.
     pub near_first: bool,
@@ -54,6 +69,8 @@ pub struct TwoPhase<P> {
     /// V.
     visible: Vec<ObjectId>,
     parts_left: u32,
+    /// Whether everything drawn in this frame is known to have shown something.
+    knows: bool,
     compaction: Compaction,
     counts: Counts,
 }
@@ -62,6 +79,8 @@ pub struct TwoPhase<P> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
     DrawFirst,
+    /// Takes in what of the first phase shows.
+    SawFirst,
     Sweep,
     /// Waits for the main sweep, or for one behind a part.
     Wait,
@@ -69,6 +88,8 @@ enum Stage {
     Found,
     /// Draws the nearest of what was found, so many, and goes on with the others.
     DrawPart(usize),
+    /// Takes in what of those shows.
+    SawPart(usize),
     SweepRest,
     /// The main sweep was lost: draws the groups from this one on, then what is loose.
     DrawLost(usize),
@@ -85,15 +106,6 @@ enum Reply {
     Lost,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Counts {
-    first: u32,
-    groups: u32,
-    loose: u32,
-    sweeps: u32,
-    found: u32,
-}
-
 /// New objects that are drawn at once in any case; the first part has so many, and each further one
 /// twice as many as the one before.
 const PART: usize = 16;
@@ -102,6 +114,7 @@ impl<P: Plan> Default for TwoPhase<P> {
     fn default() -> Self {
         Self {
             occluder_filtering: false,
+            by_geometry: true,
             parts: 8,
             near_first: true,
             plan: P::default(),
@@ -116,6 +129,7 @@ impl<P: Plan> Default for TwoPhase<P> {
             order: Vec::new(),
             visible: Vec::new(),
             parts_left: 0,
+            knows: false,
             compaction: Compaction::default(),
             counts: Counts::default(),
         }
@@ -139,8 +153,8 @@ impl<P: Plan> Policy for TwoPhase<P> {
         self.counts = Counts::default();
         self.second.clear();
         self.rest.clear();
-        let First { objects, set, retest } = &mut self.first;
-        *retest = !self.occluder_filtering;
+        self.knows = self.by_geometry;
+        let First { objects, set, .. } = &mut self.first;
         objects.clear();
         set.clear();
         for &id in &self.visible {
@@ -161,11 +175,28 @@ impl<P: Plan> Policy for TwoPhase<P> {
     fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
         loop {
             match self.stage {
+                Stage::DrawFirst if self.knows => {
+                    self.stage = Stage::SawFirst;
+                    let ticket = self.new_ticket();
+                    return Action::DrawIfSeen { ticket, objects: &self.first.objects };
+                }
                 Stage::DrawFirst => {
                     self.stage = Stage::Sweep;
                     return Action::DrawObjects(&self.first.objects);
                 }
+                Stage::SawFirst | Stage::SawPart(_) if self.answer == Reply::None => {
+                    return Action::Wait(Wait::Block);
+                }
+                Stage::SawFirst => {
+                    self.knows = self.answer == Reply::Found;
+                    if self.knows {
+                        self.first.objects.retain(|&id| self.found.contains(id));
+                        self.counts.left_out = self.counts.first - self.first.objects.len() as u32;
+                    }
+                    self.stage = Stage::Sweep;
+                }
                 Stage::Sweep => {
+                    self.first.retest = !self.occluder_filtering && !self.knows;
                     self.targets.groups.clear();
                     self.targets.loose.clear();
                     self.plan.plan(cx, &self.first, &mut self.targets);
@@ -178,7 +209,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
                     self.stage = Stage::Wait;
                     // Rays without groups: nothing but loose objects.
                     let test = if self.counts.groups > 0 { P::TEST } else { alone(P::TEST) };
-                    let ticket = self.new_ticket();
+                    let ticket = self.new_sweep();
                     let Targets { groups, loose } = &self.targets;
                     return Action::Sweep { ticket, groups, loose, test };
                 }
@@ -187,6 +218,23 @@ impl<P: Plan> Policy for TwoPhase<P> {
                     return Action::Wait(Wait::Block);
                 }
                 Stage::Found => self.look_at_found(cx),
+                Stage::DrawPart(count) if self.knows => {
+                    self.stage = Stage::SawPart(count);
+                    let ticket = self.new_ticket();
+                    return Action::DrawIfSeen { ticket, objects: &self.rest[..count] };
+                }
+                Stage::SawPart(count) => {
+                    self.knows = self.answer == Reply::Found;
+                    let store = cx.scene.objects_store();
+                    let (knows, found) = (self.knows, &self.found);
+                    // No answer speaks of what hides nothing: it is drawn.
+                    let is_drawn =
+                        |id: &ObjectId| !knows || found.contains(*id) || !store.is_occluder(id.slot() as u32);
+                    let before = self.second.len();
+                    self.second.extend(self.rest.drain(..count).filter(is_drawn));
+                    self.counts.left_out += (count - (self.second.len() - before)) as u32;
+                    self.stage = if self.rest.is_empty() { Stage::AskOwners } else { Stage::SweepRest };
+                }
                 Stage::DrawPart(count) if count == self.rest.len() => {
                     self.second.extend_from_slice(&self.rest);
                     self.stage = Stage::AskOwners;
@@ -200,7 +248,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 }
                 Stage::SweepRest => {
                     self.stage = Stage::Wait;
-                    let ticket = self.new_ticket();
+                    let ticket = self.new_sweep();
                     // Groups find out at once what has become hidden as a whole.
                     let (groups, loose, test) = match P::TEST {
                         SweepTest::Rays if self.counts.groups > 0 => {
@@ -220,12 +268,12 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 }
                 Stage::AskOwners => {
                     self.remember(cx);
-                    if !self.occluder_filtering || self.visible.is_empty() {
+                    if self.knows || !self.occluder_filtering || self.visible.is_empty() {
                         self.stage = Stage::Done;
                         continue;
                     }
                     self.stage = Stage::WaitForOwners;
-                    let ticket = self.new_ticket();
+                    let ticket = self.new_sweep();
                     let test = SweepTest::Owners;
                     return Action::Sweep { ticket, groups: &[], loose: &self.visible, test };
                 }
@@ -267,14 +315,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
     }
 
     fn counters(&self) -> Vec<Counter> {
-        let Counts { first, groups, loose, sweeps, found } = self.counts;
-        let mut counters = vec![
-            Counter { key: "drawn_first", count: first },
-            Counter { key: "groups", count: groups },
-            Counter { key: "loose", count: loose },
-            Counter { key: "sweeps", count: sweeps },
-            Counter { key: "found", count: found },
-        ];
+        let mut counters = self.counts.list();
         counters.extend(self.plan.counters());
         counters
     }
@@ -285,6 +326,11 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 "occluder_filtering",
                 self.occluder_filtering,
                 "draw first only what owned a sample in the last frame",
+            ),
+            Dial::new(
+                "by_geometry",
+                self.by_geometry,
+                "draw only what shows by its geometry, where that can be told",
             ),
             Dial::new("near_first", self.near_first, "draw what was visible from near to far, not by slot"),
             Dial::new("parts", self.parts, "parts in which many new objects are drawn, at most"),
@@ -297,6 +343,9 @@ impl<P: Plan> Policy for TwoPhase<P> {
         match key {
             "occluder_filtering" => {
                 self.occluder_filtering = dial::choice(key, value, &[("true", true), ("false", false)])?;
+            }
+            "by_geometry" => {
+                self.by_geometry = dial::choice(key, value, &[("true", true), ("false", false)])?
             }
             "near_first" => self.near_first = dial::choice(key, value, &[("true", true), ("false", false)])?,
             "parts" => self.parts = dial::number(key, value, 1..=64)?,
@@ -311,8 +360,12 @@ impl<P: Plan> TwoPhase<P> {
     fn new_ticket(&mut self) -> Ticket {
         self.ticket = Ticket(self.ticket.0.wrapping_add(1));
         self.answer = Reply::None;
-        self.counts.sweeps += 1;
         self.ticket
+    }
+
+    fn new_sweep(&mut self) -> Ticket {
+        self.counts.sweeps += 1;
+        self.new_ticket()
     }
 
     /// Decides what to draw of what the last sweep found.
@@ -334,7 +387,8 @@ impl<P: Plan> TwoPhase<P> {
         if is_main {
             // Most of what is visible is in the depth already: there is little to win.
             let is_usual = self.rest.len() <= self.first.objects.len() / 2;
-            self.parts_left = if is_usual { 1 } else { self.parts };
+            // By geometry, each is tested behind all before it.
+            self.parts_left = if is_usual || self.knows { 1 } else { self.parts };
             near_first(cx, &mut self.rest, &mut self.order);
         }
         self.parts_left -= 1;

@@ -137,6 +137,19 @@ impl<B: QueryBackend> QueryBackend for Faulty<B> {
         self.inner.draw_objects(objects, record)
     }
 
+    fn draws_if_seen(&self) -> bool {
+        self.inner.draws_if_seen()
+    }
+
+    fn draw_if_seen(
+        &mut self,
+        ticket: Ticket,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut B::Pass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.inner.draw_if_seen(ticket, objects, record)
+    }
+
     fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
         if self.has_room(ticket) { self.inner.ask(ticket, boxes, want) } else { Ok(()) }
     }

@@ -143,6 +143,30 @@ pub trait QueryBackend {
         self.draw(|pass| record(pass, objects))
     }
 
+    /// Whether it can leave out of a drawing what does not show ([`QueryBackend::draw_if_seen`]), and that is
+    /// as exact as the app's own picture. Of the frame that has begun.
+    fn draws_if_seen(&self) -> bool {
+        false
+    }
+
+    /// Draws those of the objects of which something shows, by their geometry: `record` is called for all of
+    /// them, but one counts as drawn only if some sample of it is in sight of all that was drawn before,
+    /// ties included; also of what comes before it in `objects`, if the backend goes one by one. Answered by
+    /// [`Answer::Swept`] with those, or not at all: then all of them are drawn.
+    ///
+    /// It is called only if [`QueryBackend::draws_if_seen`].
+    ///
+    /// # Errors
+    /// What the device reports.
+    fn draw_if_seen(
+        &mut self,
+        _ticket: Ticket,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut Self::Pass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.draw_objects(objects, record)
+    }
+
     /// Asks about boxes, against everything drawn before. [`Want::Dual`] takes exactly one.
     ///
     /// # Errors

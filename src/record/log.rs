@@ -13,6 +13,8 @@ use crate::scene::{ObjectRef, Scene};
 pub(super) struct Log {
     /// Whether the backend owned its depth.
     pub(super) owns_depth: bool,
+    /// Whether it could leave out what does not show.
+    pub(super) draws_if_seen: bool,
     /// The earlier frame whose depth the questions saw.
     pub(super) past: Option<RecordedView>,
     pub(super) asked: Asked,
@@ -84,6 +86,16 @@ impl<B> Logged<B> {
     }
 }
 
+impl<B: QueryBackend> Logged<B> {
+    /// Starts a frame that has begun.
+    fn start(&mut self, past: Option<&View>) {
+        if let Some(log) = &mut self.log {
+            let (owns_depth, draws_if_seen) = (self.backend.owns_depth(), self.backend.draws_if_seen());
+            *log = Log { owns_depth, draws_if_seen, past: past.map(RecordedView::new), ..Log::default() };
+        }
+    }
+}
+
 impl<B: QueryBackend> QueryBackend for Logged<B> {
     type Pass = B::Pass;
 
@@ -96,18 +108,14 @@ impl<B: QueryBackend> QueryBackend for Logged<B> {
     }
 
     fn begin(&mut self, view: &View) -> Result<(), Error> {
-        if let Some(log) = &mut self.log {
-            *log = Log { owns_depth: self.backend.owns_depth(), ..Log::default() };
-        }
-        self.backend.begin(view)
+        self.backend.begin(view)?;
+        self.start(None);
+        Ok(())
     }
 
     fn begin_late(&mut self, view: &View, frames: u32) -> Result<Option<View>, Error> {
         let past = self.backend.begin_late(view, frames)?;
-        if let Some(log) = &mut self.log {
-            let past = past.as_ref().map(RecordedView::new);
-            *log = Log { owns_depth: self.backend.owns_depth(), past, ..Log::default() };
-        }
+        self.start(past.as_ref());
         Ok(past)
     }
 
@@ -125,6 +133,19 @@ impl<B: QueryBackend> QueryBackend for Logged<B> {
         record: impl FnMut(&mut B::Pass, &[ObjectRef]),
     ) -> Result<(), Error> {
         self.backend.draw_objects(objects, record)
+    }
+
+    fn draws_if_seen(&self) -> bool {
+        self.backend.draws_if_seen()
+    }
+
+    fn draw_if_seen(
+        &mut self,
+        ticket: Ticket,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut B::Pass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.backend.draw_if_seen(ticket, objects, record)
     }
 
     fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {

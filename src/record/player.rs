@@ -124,6 +124,7 @@ impl<R: Read> Player<R> {
         }
         backend.asked = Asked::default();
         backend.owns_depth = frame.log.owns_depth;
+        backend.draws_if_seen = frame.log.draws_if_seen;
         backend.past = frame.log.past.as_ref().map(RecordedView::view).transpose()?;
         backend.deliveries = frame.log.deliveries.into();
         let (stats, error) = match eye.frame(scene, &view, backend, |(), _| {}) {
@@ -159,6 +160,7 @@ fn unknown(error: Error) -> Error {
 #[derive(Debug, Default)]
 struct Replay {
     owns_depth: bool,
+    draws_if_seen: bool,
     past: Option<View>,
     asked: Asked,
     deliveries: VecDeque<Delivery>,
@@ -185,6 +187,10 @@ impl QueryBackend for Replay {
 
     fn owns_depth(&self) -> bool {
         self.owns_depth
+    }
+
+    fn draws_if_seen(&self) -> bool {
+        self.draws_if_seen
     }
 
     fn draw(&mut self, record: impl FnOnce(&mut ())) -> Result<(), Error> {

@@ -27,6 +27,7 @@ impl Hull {
     }
 
     /// Whether it reaches nowhere beyond another.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn is_within(&self, other: &Self) -> bool {
         (self.0[0].cmpge(other.0[0]) & self.0[1].cmpge(other.0[1])).all()

@@ -127,7 +127,9 @@ impl Script {
                     "wait".to_owned()
                 }
                 Action::Done => break,
-                Action::DrawObjects(_) | Action::Sweep { .. } => panic!("these policies draw nodes"),
+                Action::DrawObjects(_) | Action::DrawIfSeen { .. } | Action::Sweep { .. } => {
+                    panic!("these policies draw nodes")
+                }
             };
             tell(&line).expect("a string takes everything");
             steps += 1;

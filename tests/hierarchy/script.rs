@@ -84,7 +84,9 @@ impl Row {
                     }
                 }
                 Action::Done => break,
-                Action::DrawObjects(_) | Action::Sweep { .. } => unreachable!("nodes are drawn, not objects"),
+                Action::DrawObjects(_) | Action::DrawIfSeen { .. } | Action::Sweep { .. } => {
+                    unreachable!("nodes are drawn, not objects")
+                }
             }
         }
         told.join(" ")

@@ -8,11 +8,13 @@ use tercet::scene::ObjectRef;
 
 use crate::support::Shown;
 
-/// Says nothing of the first few groups of each sweep, or of the first few loose objects.
+/// Says nothing of the first few groups of each sweep, of the first few loose objects, or of the first few that
+/// are to be drawn if they show. Where that is none, it tries nobody.
 pub struct Dropping {
     pub inner: SoftwareQueries,
     pub groups: usize,
     pub loose: usize,
+    pub tried: usize,
 }
 
 impl Shown for Dropping {
@@ -46,6 +48,19 @@ impl QueryBackend for Dropping {
         record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
     ) -> Result<(), Error> {
         self.inner.draw_objects(objects, record)
+    }
+
+    fn draws_if_seen(&self) -> bool {
+        self.tried > 0 && self.inner.draws_if_seen()
+    }
+
+    fn draw_if_seen(
+        &mut self,
+        ticket: Ticket,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.inner.draw_if_seen(ticket, &objects[self.tried.min(objects.len())..], record)
     }
 
     fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {

@@ -5,9 +5,11 @@ use tercet::query::software::SoftwareQueries;
 
 use crate::support::Shown;
 
-/// Answers go astray in every way.
+/// Answers go astray in every way, every other time those of who shows, too.
 pub fn faulty(seed: u64) -> Faulty<SoftwareQueries> {
-    Faulty::new(SoftwareQueries::new(), Faults::MANY, seed)
+    let mut queries = SoftwareQueries::new();
+    queries.set_true_shapes(seed % 2 == 1);
+    Faulty::new(queries, Faults::MANY, seed)
 }
 
 impl Shown for Faulty<SoftwareQueries> {

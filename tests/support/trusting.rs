@@ -60,9 +60,10 @@ impl Policy for Trusting {
                 Action::Draw(node, extent) => return Action::Draw(node, extent),
                 Action::Wait(wait) => return Action::Wait(wait),
                 Action::Done => return Action::Done,
-                Action::Ask { .. } | Action::DrawObjects(_) | Action::Sweep { .. } => {
-                    panic!("one box a question, please")
-                }
+                Action::Ask { .. }
+                | Action::DrawObjects(_)
+                | Action::DrawIfSeen { .. }
+                | Action::Sweep { .. } => panic!("one box a question, please"),
             };
             self.policy.answer(cx, trusted, Answer::Any(false));
         }

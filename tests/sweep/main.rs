@@ -6,5 +6,6 @@ mod stage;
 mod hybrid;
 mod owners;
 mod pyramid;
+mod seen;
 mod table;
 mod tests;

@@ -23,7 +23,8 @@ pub const AUTO: usize = 8;
 /// See [`VFC`].
 pub const REF: usize = 10;
 
-const UNFILTERED: &[(&str, &str)] = &[("occluder_filtering", "false")];
+/// As published: by boxes alone.
+const UNFILTERED: &[(&str, &str)] = &[("occluder_filtering", "false"), ("by_geometry", "false")];
 const WITH_FILTER: &[(&str, &str)] = &[("occluder_filtering", "true")];
 
 /// In the order of the page: the paper's names, and ours.

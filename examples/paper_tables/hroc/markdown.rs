@@ -47,7 +47,10 @@ inside the frustum. *Triangles* are those drawn over REF's. *Wrongly culled* is 
 
 const NOTES: &str = "\
 - NOC draws everything, VFC what meets the view frustum, REF the exact visible set, found beforehand. OF is \
-occluder filtering: only what owns a pixel is drawn first in the next frame.
+occluder filtering: only what showed is drawn first in the next frame.
+- All but HROC without a filter draw only what shows by its geometry (`by_geometry`): an object counts as drawn \
+if a sample of it passes the depth test behind all before it. *Triangles* are all that went to the rasteriser, \
+those of objects that were left out included. HROC without a filter goes by boxes alone, as published.
 - All of this is the CPU's own: rasterising, sweeping and drawing. The paper's figures are of a GPU, where the \
 sweep is nearly free and drawing is not; its worlds are not ours either.
 - The share of hidden objects is taken from what REF draws, which is exact.
@@ -70,7 +73,7 @@ fn by_scene(outcomes: &[Outcome], cell: impl Fn(&Outcome, usize) -> String) -> S
     table(&header, (0..ALGORITHMS.len()).map(row))
 }
 
-/// What there is to win by asking about boxes.
+/// What there is to win by asking about boxes alone.
 fn at_best(outcomes: &[Outcome]) -> String {
     let known = |outcome: &Outcome| {
         Some(format!("{} {}", outcome.scene.name, percent(outcome.boxes_cull_of_hidden()?)))
@@ -78,8 +81,8 @@ fn at_best(outcomes: &[Outcome]) -> String {
     let all: Option<Vec<String>> = outcomes.iter().map(known).collect();
     let text = |all: Vec<String>| {
         format!(
-            "Some objects are hidden though their boxes are not. Whoever asks about the boxes of objects culls at \
-             best: {}.\n\n",
+            "Some objects are hidden though their boxes are not. Whoever asks about the boxes of objects alone \
+             culls at best: {}.\n\n",
             all.join(", ")
         )
     };

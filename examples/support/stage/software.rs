@@ -20,7 +20,10 @@ pub struct SoftwareStage {
 impl SoftwareStage {
     /// Draws as finely as `detail` says.
     pub fn new(detail: Detail) -> Self {
-        Self { queries: Watched::new(Logged::silent(SoftwareQueries::new())), painter: Painter { detail } }
+        let mut queries = SoftwareQueries::new();
+        // The painter paints what there is to see.
+        queries.set_true_shapes(true);
+        Self { queries: Watched::new(Logged::silent(queries)), painter: Painter { detail } }
     }
 
     /// The backend, as a recorder listens to it.

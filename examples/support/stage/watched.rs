@@ -112,6 +112,19 @@ impl<B: QueryBackend> QueryBackend for Watched<B> {
         self.backend.draw_objects(objects, record)
     }
 
+    fn draws_if_seen(&self) -> bool {
+        self.backend.draws_if_seen()
+    }
+
+    fn draw_if_seen(
+        &mut self,
+        ticket: Ticket,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut B::Pass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        self.backend.draw_if_seen(ticket, objects, record)
+    }
+
     fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
         self.backend.sweep(ticket, sweep)
     }

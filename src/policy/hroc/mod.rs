@@ -11,8 +11,9 @@
 //!   themselves, are tested one by one.
 //! - A group whose box holds the eye, or covers more than a share of the screen (`share`), is opened
 //!   before rays are cast: rays over the whole screen are what the paper names as its weakness.
-//! - The occluders are all of V in the frustum: which of them pass the early depth test while they are
-//!   drawn (*O*) is not known to the host. Without occluder filtering their boxes are swept for it.
+//! - The occluders are those of V that pass the depth test while they are drawn (*O*), where the backend
+//!   tells which these are (`by_geometry`). Elsewhere they are all of V in the frustum; without occluder
+//!   filtering their boxes are swept, to find out which are still visible.
 //!
 //! [`extract`]: extract::Extraction
 
@@ -54,8 +55,7 @@ impl Plan for Groups {
     fn plan(&mut self, cx: &Context<'_>, first: &First, targets: &mut Targets) {
         self.extract(cx, first.objects.iter().copied());
         let Targets { groups, loose } = targets;
-        let is_asked = |id: &ObjectId| first.retest || !first.set.contains(*id);
-        self.emit(cx, |node| groups.push(node), |id| loose.extend(Some(id).filter(is_asked)));
+        self.emit(cx, |node| groups.push(node), |id| loose.extend(Some(id).filter(|&id| first.is_asked(id))));
     }
 
     fn dials(&self) -> Vec<Dial> {

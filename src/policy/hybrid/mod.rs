@@ -44,12 +44,9 @@ impl Plan for MoversApart {
         groups.emit(
             cx,
             |node| asked.extend(Some(node).filter(|&node| awake.any_settled(cx, node))),
-            |id| {
-                let is_asked = !awake.contains(id) && (first.retest || !first.set.contains(id));
-                loose.extend(is_asked.then_some(id));
-            },
+            |id| loose.extend(Some(id).filter(|&id| !awake.contains(id) && first.is_asked(id))),
         );
-        loose.extend_from_slice(awake.objects());
+        loose.extend(awake.objects().iter().filter(|&&id| first.is_asked(id)));
     }
 
     fn counters(&self) -> Vec<Counter> {

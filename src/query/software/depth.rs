@@ -163,15 +163,37 @@ pub(crate) struct DepthSink<'a> {
 
 /// Changes of a block after which its hierarchy is brought up to date before somebody is drawn for
 /// want of knowing better.
-const REFRESH_CALL: u32 = 8;
+pub(crate) const REFRESH_CALL: u32 = 8;
 /// The same before a triangle is drawn.
-const REFRESH_TRIANGLE: u32 = 16;
+pub(crate) const REFRESH_TRIANGLE: u32 = 16;
 
 impl DepthSink<'_> {
     #[inline(always)]
     fn refresh<I: Isa>(&mut self, block: usize) {
         self.base.farthest[block] = I::store_f(I::least(&self.blocks[block].0));
         self.base.stale[block] = STALE;
+    }
+
+    /// Some tiles of a block, brought up to date after so many changes: those in which some sample is not
+    /// before all up to `greatest`.
+    #[inline(always)]
+    pub(crate) fn tiles_in_reach<I: Isa>(&mut self, block: usize, greatest: I::F, changes: u32) -> Mask {
+        if self.base.stale[block] & !STALE >= changes {
+            self.refresh::<I>(block);
+        }
+        I::ge_f(greatest, I::load_f(&self.base.farthest[block]))
+    }
+
+    /// The samples of a tile.
+    #[inline(always)]
+    pub(crate) fn kept<I: Isa>(&self, block: usize, tile: usize) -> I::F {
+        I::load_f(&self.blocks[block].0[tile])
+    }
+
+    /// A sample, as it lies in memory.
+    #[inline(always)]
+    pub(crate) fn kept_at(&self, at: usize) -> f32 {
+        self.blocks[at / BLOCK_PIXELS].0[at / LANES % LANES][at % LANES]
     }
 }
 

@@ -10,8 +10,10 @@
 //! | `setup`, `raster`, `tiles`, `walk`, `large` | triangles to samples |
 //! | `compact` | small meshes that cover few pixels, all at once |
 //! | `sink`, `layout`, `depth`, `hi_z` | what is kept, and how it lies in memory |
+//! | `seen` | drawing with a note of who showed a sample |
 //! | `count` | answers to questions |
 //! | `batch`, `window` | many small ones at once |
+//! | `stats` | counters |
 //! | `kept_frames` | depths of earlier frames, for late questions |
 //! | `sweep` | answers to sweeps, object by object |
 //! | `visibility` | who owns each pixel of a finished frame |
@@ -32,9 +34,11 @@ mod layout;
 mod level;
 mod pass;
 mod raster;
+mod seen;
 mod setup;
 mod simd;
 mod sink;
+mod stats;
 mod sweep;
 mod tiles;
 mod vertex;
@@ -51,6 +55,7 @@ pub use depth::DepthImage;
 pub use level::SimdLevel;
 pub use pass::{DrawCall, Faces, SoftwarePass};
 pub(crate) use simd::prefetch;
+pub use stats::SoftwareStats;
 pub use sweep::{Pyramid, PyramidLevel};
 pub(crate) use visibility::Snapshot;
 pub use visibility::VisibilityImage;
@@ -64,33 +69,8 @@ use batch::{BATCH, Found};
 use depth::Depth;
 use hi_z::HiZ;
 use kept_frames::{KeptFrame, KeptFrames};
+use seen::Seen;
 use sweep::{Owned, Sweeps};
-
-/// Counters since [`QueryBackend::begin`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SoftwareStats {
-    /// Draw calls recorded.
-    pub calls: u64,
-    /// Draw calls that were skipped whole: out of view, or behind what was already drawn.
-    pub skipped_calls: u64,
-    /// Triangles of the draw calls that were not skipped.
-    pub triangles: u64,
-    /// Triangles of those that had a sample in their bounding box, whichever side they show, but for
-    /// those of parts that were hidden where they begin. What clipping leaves of a triangle counts by pieces.
-    pub rasterised: u64,
-    /// Boxes asked about.
-    pub boxes: u64,
-    /// Sweeps, but for those about owners.
-    pub sweeps: u64,
-    /// Boxes of nodes that sweeps have tested.
-    pub sweep_nodes: u64,
-    /// Rays that went down the subtrees of groups.
-    pub rays: u64,
-    /// Objects whose own boxes sweeps have tested.
-    pub swept: u64,
-    /// Objects that sweeps have found.
-    pub flagged: u64,
-}
 
 /// The software backend: a depth buffer on the CPU and the questions put to it.
 ///
@@ -118,6 +98,10 @@ pub struct SoftwareQueries {
     keeps: bool,
     sweeps: Sweeps,
     owned: Owned,
+    /// Whether what is recorded is what the app shows.
+    true_shapes: bool,
+    /// Whose draw calls an attempt consists of, and who recorded none.
+    seen: Seen,
     stats: SoftwareStats,
 }
 
@@ -158,6 +142,8 @@ impl SoftwareQueries {
             keeps: false,
             sweeps: Sweeps::default(),
             owned: Owned::default(),
+            true_shapes: false,
+            seen: Seen::default(),
             stats: SoftwareStats::default(),
         }
     }
@@ -165,6 +151,13 @@ impl SoftwareQueries {
     /// The level in use.
     pub fn level(&self) -> SimdLevel {
         self.simd
+    }
+
+    /// Says whether closures record what the app shows: of each object all that it is, and no stand-ins, such
+    /// as an [`OccluderMesh`](crate::scene::OccluderMesh). Then whoever records something, of which nothing
+    /// shows, can be left out ([`QueryBackend::draws_if_seen`]). False at first: boxes have the last word.
+    pub fn set_true_shapes(&mut self, true_shapes: bool) {
+        self.true_shapes = true_shapes;
     }
 
     /// The depth of the frame so far.
@@ -186,10 +179,7 @@ impl SoftwareQueries {
     /// Draws into the depth of the frame that has begun.
     pub(crate) fn rasterise(&mut self, view: &View, calls: &[DrawCall]) {
         let work = self.bands.rasterise(self.simd, view, calls, self.depth.sinks(&mut self.hi_z));
-        self.stats.calls += calls.len() as u64;
-        self.stats.skipped_calls += calls.len() as u64 - work.calls;
-        self.stats.triangles += work.triangles;
-        self.stats.rasterised += work.kept;
+        self.stats.add(calls.len(), work);
     }
 
     /// Draws what was recorded.
@@ -199,6 +189,23 @@ impl SoftwareQueries {
             self.rasterise(&view, pass.calls());
             (self.view, self.pass) = (Some(view), pass);
         }
+    }
+
+    /// Records what objects draw, and whose it is; returns how many draw calls were there before.
+    fn record_objects(
+        &mut self,
+        objects: &[ObjectRef],
+        mut record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> usize {
+        // What was asked before must not see what is drawn now.
+        self.answer();
+        self.pass.clear();
+        let before = self.owned.calls.len();
+        for object in objects {
+            record(&mut self.pass, std::slice::from_ref(object));
+            self.owned.owners.resize(before + self.pass.calls().len(), object.id);
+        }
+        before
     }
 
     /// Takes a frame's size; what the last one held is gone.
@@ -290,16 +297,30 @@ impl QueryBackend for SoftwareQueries {
     fn draw_objects(
         &mut self,
         objects: &[ObjectRef],
-        mut record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
     ) -> Result<(), Error> {
-        self.answer();
-        self.pass.clear();
-        let before = self.owned.calls.len();
-        for object in objects {
-            record(&mut self.pass, std::slice::from_ref(object));
-            self.owned.owners.resize(before + self.pass.calls().len(), object.id);
-        }
+        self.record_objects(objects, record);
         self.draw_pass();
+        self.pass.drain_into(&mut self.owned.calls);
+        Ok(())
+    }
+
+    /// If it is told true shapes, and the app's picture has its samples where this one has.
+    fn draws_if_seen(&self) -> bool {
+        self.true_shapes && self.view.as_ref().is_some_and(|view| view.samples() == 1)
+    }
+
+    fn draw_if_seen(
+        &mut self,
+        ticket: Ticket,
+        objects: &[ObjectRef],
+        record: impl FnMut(&mut SoftwarePass, &[ObjectRef]),
+    ) -> Result<(), Error> {
+        let first = self.record_objects(objects, record);
+        if let Some(view) = self.view.take() {
+            self.draw_seen(ticket, &view, first, objects);
+            self.view = Some(view);
+        }
         self.pass.drain_into(&mut self.owned.calls);
         Ok(())
     }

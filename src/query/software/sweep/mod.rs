@@ -70,6 +70,22 @@ impl Sweeps {
         self.used = 0;
     }
 
+    /// An empty set, to be filled for an answer.
+    pub(super) fn new_set(&mut self) -> ObjectSet {
+        if self.used == self.sets.len() {
+            self.sets.push(ObjectSet::default());
+        }
+        let mut set = std::mem::take(&mut self.sets[self.used]);
+        set.clear();
+        set
+    }
+
+    pub(super) fn answer(&mut self, ticket: Ticket, found: ObjectSet) {
+        self.asked.push((ticket, Some(self.used)));
+        self.sets[self.used] = found;
+        self.used += 1;
+    }
+
     /// The answers, as far as there are any.
     pub(super) fn answers(&self) -> impl Iterator<Item = (Ticket, Option<&ObjectSet>)> {
         self.asked.iter().map(|&(ticket, set)| (ticket, set.map(|set| &self.sets[set])))
@@ -91,11 +107,7 @@ impl SoftwareQueries {
         self.depth.settle();
         self.hi_z.refresh(self.simd, &self.depth);
         let mut sweeps = std::mem::take(&mut self.sweeps);
-        if sweeps.used == sweeps.sets.len() {
-            sweeps.sets.push(ObjectSet::default());
-        }
-        let mut found = std::mem::take(&mut sweeps.sets[sweeps.used]);
-        found.clear();
+        let mut found = sweeps.new_set();
         sweeps.loose.clear();
         for &id in sweep.loose {
             sweeps.loose.insert(id);
@@ -105,10 +117,7 @@ impl SoftwareQueries {
         } else {
             sweeps.test(self, sweep, &mut found);
         }
-        sweeps.asked.push((ticket, Some(sweeps.used)));
-        let used = sweeps.used;
-        sweeps.sets[used] = found;
-        sweeps.used += 1;
+        sweeps.answer(ticket, found);
         self.sweeps = sweeps;
     }
 }
