@@ -1,11 +1,13 @@
 //! What answers and draws: a backend, and the renderer that goes with it.
 
 mod gpu;
+mod inspected;
 mod software;
 mod watched;
 mod wgpu;
 
 pub use gpu::Gpu;
+pub use inspected::{Inspected, Level};
 pub use software::SoftwareStage;
 pub use watched::{Asked, Watched};
 pub use wgpu::{Picture, WgpuStage};
@@ -137,6 +139,22 @@ impl Stage {
         match self {
             Self::Software(stage) => stage.queries.asked(),
             Self::Wgpu(stage) => stage.queries.asked(),
+        }
+    }
+
+    /// Whether the pyramids of the next frames are kept, to be shown.
+    pub fn keep_pyramid(&mut self, keep: bool) {
+        match self {
+            Self::Software(stage) => stage.queries.keep_pyramid(keep),
+            Self::Wgpu(stage) => stage.queries.keep_pyramid(keep),
+        }
+    }
+
+    /// The levels of the last frame's pyramid of farthest depths, if it was kept.
+    pub fn pyramid(&self) -> &[Level] {
+        match self {
+            Self::Software(stage) => stage.queries.pyramid(),
+            Self::Wgpu(stage) => stage.queries.pyramid(),
         }
     }
 

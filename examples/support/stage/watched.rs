@@ -8,10 +8,13 @@ use tercet::geom::{Proxy, View};
 use tercet::query::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
 use tercet::scene::ObjectRef;
 
-/// A backend, and the questions of its last frame if anybody wants them.
+use super::{Inspected, Level};
+
+/// A backend, and the questions and the pyramid of its last frame if anybody wants them.
 pub struct Watched<B> {
     backend: B,
     log: Option<QuestionLog>,
+    pyramid: Option<Vec<Level>>,
 }
 
 /// The questions of a frame.
@@ -34,7 +37,7 @@ pub struct Asked {
 impl<B> Watched<B> {
     /// Keeps nothing, until it is told to.
     pub fn new(backend: B) -> Self {
-        Self { backend, log: None }
+        Self { backend, log: None, pyramid: None }
     }
 
     /// The backend itself.
@@ -49,6 +52,20 @@ impl<B> Watched<B> {
         } else {
             self.log = None;
         }
+    }
+
+    /// Whether the pyramids of the next frames are kept.
+    pub fn keep_pyramid(&mut self, keep: bool) {
+        if keep {
+            self.pyramid.get_or_insert_default();
+        } else {
+            self.pyramid = None;
+        }
+    }
+
+    /// The levels of the last frame's pyramid, if it was kept.
+    pub fn pyramid(&self) -> &[Level] {
+        self.pyramid.as_deref().unwrap_or_default()
     }
 
     /// The questions of the last frame, if they were kept.
@@ -66,7 +83,7 @@ impl<B> Watched<B> {
     }
 }
 
-impl<B: QueryBackend> QueryBackend for Watched<B> {
+impl<B: Inspected> QueryBackend for Watched<B> {
     type Pass = B::Pass;
 
     fn name(&self) -> &'static str {
@@ -149,6 +166,8 @@ impl<B: QueryBackend> QueryBackend for Watched<B> {
     }
 
     fn end(&mut self) -> Result<(), Error> {
-        self.backend.end()
+        let levels = self.pyramid.as_mut().map(|levels| self.backend.levels().map(|new| *levels = new));
+        // The frame ends, whatever is to be looked at.
+        self.backend.end().and(levels.unwrap_or(Ok(())))
     }
 }

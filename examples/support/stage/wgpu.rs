@@ -22,7 +22,10 @@ pub struct WgpuStage {
     gpu: Gpu,
     pub(super) queries: Watched<Logged<GpuQueries>>,
     renderer: Renderer,
+    look_ups: u32,
     picture: Picture,
+    /// Who owns each pixel, while the policy asks.
+    ids: Option<TextureView>,
     pub(super) detail: Detail,
 }
 
@@ -53,26 +56,10 @@ impl Picture {
             viewport.height,
             gpu.adapter()
         );
-        let texture = |format, usage: TextureUsages| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("picture"),
-                size: wgpu::Extent3d {
-                    width: viewport.width,
-                    height: viewport.height,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            });
-            texture.create_view(&wgpu::TextureViewDescriptor::default())
-        };
+        let texture = |format| attachment(gpu, viewport, format, TextureUsages::COPY_SRC);
         Ok(Self {
-            color: texture(Self::COLOR, TextureUsages::COPY_SRC),
-            depth: texture(TextureFormat::Depth32Float, TextureUsages::COPY_SRC),
+            color: texture(Self::COLOR),
+            depth: texture(TextureFormat::Depth32Float),
             size: (viewport.width, viewport.height),
         })
     }
@@ -116,6 +103,21 @@ impl Picture {
     }
 }
 
+/// What can be drawn into, and read.
+fn attachment(gpu: &Gpu, viewport: Viewport, format: TextureFormat, usage: TextureUsages) -> TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("picture"),
+        size: wgpu::Extent3d { width: viewport.width, height: viewport.height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: usage | TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
 impl WgpuStage {
     /// Draws as finely as `detail` says.
     pub fn new(gpu: Gpu, detail: Detail) -> anyhow::Result<Self> {
@@ -125,7 +127,9 @@ impl WgpuStage {
         Ok(Self {
             queries: Watched::new(Logged::silent(queries)),
             renderer: Renderer::new(&gpu.device, &gpu.queue, Some(Picture::COLOR))?,
+            look_ups: 0,
             picture,
+            ids: None,
             gpu,
             detail,
         })
@@ -143,6 +147,7 @@ impl WgpuStage {
 
     /// Shades each fragment with so many look-ups from now on; see [`Renderer::set_look_ups`].
     pub fn set_look_ups(&mut self, count: u32) {
+        self.look_ups = count;
         self.renderer.set_look_ups(count);
     }
 
@@ -160,10 +165,7 @@ impl WgpuStage {
         world: &World,
         view: &View,
     ) -> anyhow::Result<Drawn> {
-        if !self.picture.fits(view.viewport()) {
-            self.picture = Picture::new(&self.gpu, view.viewport())?;
-            self.queries.backend().backend.target(&self.picture.targets());
-        }
+        self.equip(view.viewport(), eye.policy().asks_owners())?;
         let Self { queries, renderer, .. } = self;
         renderer.begin(view, self.detail, Shading::Lit);
         let mut triangles = 0;
@@ -174,5 +176,32 @@ impl WgpuStage {
         self.gpu.wait()?;
         stats.wait += start.elapsed();
         Ok(Drawn { stats, triangles })
+    }
+
+    /// Makes what is drawn into anew, if another size is wanted, or an item buffer now or no longer.
+    fn equip(&mut self, viewport: Viewport, asks_owners: bool) -> anyhow::Result<()> {
+        let Self { gpu, queries, renderer, .. } = self;
+        let is_other = asks_owners != self.ids.is_some();
+        if is_other {
+            let color = Some(Picture::COLOR);
+            *renderer = match asks_owners {
+                true => Renderer::with_ids(&gpu.device, &gpu.queue, color)?,
+                false => Renderer::new(&gpu.device, &gpu.queue, color)?,
+            };
+            renderer.set_look_ups(self.look_ups);
+        }
+        if self.picture.fits(viewport) && !is_other {
+            return Ok(());
+        }
+        self.picture = Picture::new(gpu, viewport)?;
+        self.ids = asks_owners.then(|| attachment(gpu, viewport, Renderer::IDS, TextureUsages::empty()));
+        let mut targets = self.picture.targets();
+        if let Some(ids) = &self.ids {
+            targets = targets.with_color(ids.clone(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
+        }
+        let queries = &mut queries.backend().backend;
+        queries.target(&targets);
+        queries.target_ids(self.ids.as_ref());
+        Ok(())
     }
 }

@@ -13,6 +13,7 @@ use tercet::geom::{Aabb, View, Viewport};
 use super::display::{Display, Layers};
 use super::engine::Engine;
 use super::fly::Fly;
+use super::pyramid::PyramidView;
 use super::screenshot::Screenshots;
 use super::{PANELS, frozen, panel, pick, plots};
 use crate::flags::Flags;
@@ -31,6 +32,7 @@ pub struct App {
     stride: f32,
     display: Display,
     layers: Layers,
+    pyramid: PyramidView,
     screenshots: Screenshots,
     /// Where screenshots go.
     out: PathBuf,
@@ -57,6 +59,7 @@ impl App {
             engine,
             display,
             layers: Layers::default(),
+            pyramid: PyramidView::default(),
             screenshots: Screenshots::default(),
             out: flags.out(),
             message: None,
@@ -112,11 +115,17 @@ impl App {
         let viewport = Viewport::new(side(size.x), side(size.y));
         let view = self.engine.scenario.look(self.fly.pose(), viewport)?;
         self.engine.stage.keep_questions(self.layers.proxies);
+        self.engine.stage.keep_pyramid(self.layers.pyramid > 0);
         self.engine.watches_movers = self.layers.awake;
         let done = self.engine.frame(self.fly.pose(), viewport);
         self.look_under(&response, &view);
         let picture = self.display.draw(&self.engine, &view, &self.layers, self.marked)?;
         self.paint(ui, frame, &response, &picture);
+        let levels = self.engine.stage.pyramid();
+        if let Some(level) = self.layers.pyramid.checked_sub(1).and_then(|n| levels.get(n as usize)) {
+            let (number, pixels) = (self.layers.pyramid, [viewport.width, viewport.height]);
+            self.pyramid.paint(ui, rect, level, number, pixels);
+        }
         if let (Some(_), Some(culled)) = (self.engine.frozen, &self.engine.culled) {
             let reach = f64::from(self.engine.bounds().size().length()) * 0.4;
             frozen::draw(ui.painter(), rect, &view, culled, reach);

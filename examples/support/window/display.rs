@@ -27,6 +27,8 @@ pub struct Layers {
     pub awake: bool,
     /// What the questions of the frame rasterised.
     pub proxies: bool,
+    /// A level of the culling depth's pyramid, from 1 on, over everything; 0 for none.
+    pub pyramid: u32,
 }
 
 impl Layers {

@@ -6,6 +6,7 @@
 //! | `engine` | the scene, the eye and the backend |
 //! | `fly` | the camera |
 //! | `display` | what is drawn over and instead of the engine's own picture |
+//! | `pyramid` | a level of the culling depth's pyramid |
 //! | `frozen` | the culling camera's frustum, seen from elsewhere |
 //! | `states` | nodes and objects by what became of them |
 //! | `pick` | what is under the cursor, and why it is drawn or not |
@@ -21,6 +22,7 @@ mod frozen;
 mod panel;
 mod pick;
 mod plots;
+mod pyramid;
 mod screenshot;
 mod states;
 

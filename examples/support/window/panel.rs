@@ -109,6 +109,11 @@ fn view(ui: &mut Ui, layers: &mut Layers) {
     for (n, (on, what)) in layers.each().into_iter().enumerate() {
         ui.checkbox(on, format!("{} {what}", n + 1));
     }
+    ui.horizontal(|ui| {
+        ui.label("level of the depth pyramid")
+            .on_hover_text("farthest depths, as Hi-Z compares with; 0: none");
+        ui.add(DragValue::new(&mut layers.pyramid).speed(0.05).range(0..=14));
+    });
     CollapsingHeader::new("What the colours mean").show(ui, states::legend);
 }
 

@@ -98,6 +98,13 @@ impl SoftwareQueries {
         &self.sweeps.pyramid
     }
 
+    /// The pyramid of what has been drawn so far, built anew to look at.
+    pub fn inspect_pyramid(&mut self) -> &Pyramid {
+        self.depth.settle();
+        self.sweeps.pyramid.build(&self.depth);
+        &self.sweeps.pyramid
+    }
+
     /// Answers a sweep at once, against the depth as it is now.
     pub(super) fn sweep_now(&mut self, ticket: Ticket, sweep: &Sweep<'_>) {
         if self.view.is_none() || (sweep.test == SweepTest::Owners && self.owned.owners.is_empty()) {
