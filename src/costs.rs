@@ -83,7 +83,7 @@ impl Costs {
         // asking. The two are of different frames, so the one may be longer than the other.
         let waited = stats.wait.saturating_sub(stats.awaited_draw);
         let question = each(stats.policy + stats.query + waited, stats.queries);
-        let object = each(stats.draw + stats.device_draw, stats.drawn);
+        let object = each(stats.draw + stats.device_draw, stats.drawn + stats.left_out);
         let ratio = question / object;
         if ratio.is_finite() && ratio > 0.0 {
             // Of logarithms: twice as dear and half as dear weigh alike.

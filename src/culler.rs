@@ -249,6 +249,7 @@ impl<P: Policy> Culler<P> {
         self.policy.vote(&mut self.votes);
         self.votes.asks = self.policy.asks();
         stats.drawn = self.drawn.visible.len() as u32;
+        stats.left_out = self.drawn.left_out();
         stats.policy = start.elapsed().saturating_sub(stats.draw + stats.query + stats.wait);
         // Drawing that is not told apart from waiting would make questions look dear. So would a few
         // questions of a policy that does not ask about nodes, in a frame that it spends otherwise.

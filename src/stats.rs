@@ -15,8 +15,11 @@ pub struct Counter {
 /// What one frame of one view did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
-    /// Objects handed to the draw closure.
+    /// Objects drawn: handed to the draw closure, and not found to show nothing.
     pub drawn: u32,
+    /// Objects handed to the draw closure of which nothing showed
+    /// ([`Action::DrawIfSeen`](crate::policy::Action::DrawIfSeen)).
+    pub left_out: u32,
     /// Questions asked.
     pub queries: u32,
     /// Boxes in them.

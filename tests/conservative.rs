@@ -136,7 +136,7 @@ fn frames_equal_those_without_culling() {
             stage.detail = Detail::FULL;
             let tree = TreeConfig::default();
             // Two of them by boxes, two by geometry where that can be told.
-            let mut queries = queries(2 * seed);
+            let mut queries = queries(3 * seed);
             let outcome = run(&mut stage, tree, dialled(name, seed), &mut queries, FRAMES);
             assert_eq!(outcome.wrong_pixels, 0, "{name}, world {seed}");
             assert!(outcome.culled > 0);
@@ -197,7 +197,7 @@ fn while_ways_race_nothing_is_lost() {
         let tree = trees()[seed as usize % trees().len()].clone();
         let policy = Tally { inner: Fickle(policy::Auto::default()), key: "auto_hroc", sum: first.clone() };
         let outcome = match seed % 2 {
-            0 => run(&mut stage, tree, policy, &mut SoftwareQueries::new(), frames),
+            0 => run(&mut stage, tree, policy, &mut queries(3 * seed / 2), frames),
             _ => run(&mut stage, tree, policy, &mut faulty(seed), frames),
         };
         assert_eq!(outcome.lost, 0, "an object was lost in random world {seed}");

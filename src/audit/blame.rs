@@ -29,6 +29,9 @@
 //!    the object would have been drawn.
 //! 6. Nothing of this: a defect.
 //!
+//! What was left out by its geometry ([`Action::DrawIfSeen`](crate::policy::Action::DrawIfSeen)) may have a box in
+//! sight: it is no dial's fault, so rule 6 would find it, but under `latency` rule 5 comes first.
+//!
 //! The other dials lose nothing: those for skipping questions and the budget draw what is not asked about.
 //!
 //! *Limits.* A recount within the threshold shows that this dial suffices to lose the object, not that the

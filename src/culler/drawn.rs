@@ -118,6 +118,11 @@ impl DrawnList {
         Ok(())
     }
 
+    /// How many were tried in this frame, and showed nothing.
+    pub(super) fn left_out(&self) -> u32 {
+        self.hidden.len() as u32
+    }
+
     /// Takes the answer to an attempt to draw, if it is one.
     pub(super) fn settle(&mut self, ticket: Ticket, answer: Answer<'_>) {
         if self.attempt == Some(ticket) {

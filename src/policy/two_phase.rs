@@ -4,8 +4,8 @@
 //! sweep asks about the rest, object by object, and what it finds is drawn (*U*). What was found visible
 //! is the V of the next frame; with *occluder filtering*, those of it that own a sample.
 //!
-//! Conservative whatever the history: an object is culled only if it meets no frustum, or if a sweep of
-//! this very frame has not found it. V decides what comes first, and nothing else: one of it that has
+//! Conservative whatever the history: an object is culled only if it meets no frustum, if a sweep of this very
+//! frame has not found it, or if nothing of it showed as it was drawn. V decides what comes first, and nothing else: one of it that has
 //! moved is drawn where it is now, and one that is gone is left out.
 //!
 //! *By geometry.* Much is hidden whose box is not: the boxes of large and intricate things show what they
@@ -218,6 +218,7 @@ impl<P: Plan> Policy for TwoPhase<P> {
                     return Action::Wait(Wait::Block);
                 }
                 Stage::Found => self.look_at_found(cx),
+                Stage::DrawPart(0) => self.stage = Stage::AskOwners,
                 Stage::DrawPart(count) if self.knows => {
                     self.stage = Stage::SawPart(count);
                     let ticket = self.new_ticket();

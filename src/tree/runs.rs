@@ -130,7 +130,7 @@ impl FreeRuns {
 
     /// Makes one of free runs that lie side by side, or the arena would come to consist of those of the
     /// wrong size. Not again before a quarter of the runs are new: so it costs no more than giving them back.
-    fn join(&mut self) {
+    pub(super) fn join(&mut self) {
         if 4 * self.fresh < self.count().max(1) {
             return;
         }

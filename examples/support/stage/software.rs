@@ -26,6 +26,12 @@ impl SoftwareStage {
         Self { queries: Watched::new(Logged::silent(queries)), painter: Painter { detail } }
     }
 
+    /// What is seen is drawn by another renderer, which rounds otherwise: boxes, which allow for that, have the
+    /// last word.
+    pub fn shown_by_another(&mut self) {
+        self.queries.backend().backend.set_true_shapes(false);
+    }
+
     /// The backend, as a recorder listens to it.
     pub fn log(&mut self) -> &mut Logged<SoftwareQueries> {
         self.queries.backend()

@@ -55,7 +55,8 @@ pub struct Engine {
 
 impl Engine {
     /// A scenario on a backend.
-    pub fn new(flags: &Flags, scenario: Scenario, stage: Stage, gpu: Gpu) -> anyhow::Result<Self> {
+    pub fn new(flags: &Flags, scenario: Scenario, mut stage: Stage, gpu: Gpu) -> anyhow::Result<Self> {
+        shown_here(&mut stage);
         let (detail, tree) = (flags.detail()?, flags.tree()?);
         Ok(Self {
             scene: Scene::new(SceneConfig { tree: tree.clone(), ..Default::default() }),
@@ -84,6 +85,7 @@ impl Engine {
             true => Stage::on(self.gpu.clone(), self.detail)?,
             false => Stage::software(self.detail),
         };
+        shown_here(&mut self.stage);
         self.audit_anew();
         Ok(())
     }
@@ -181,5 +183,12 @@ impl Engine {
     /// The device that the window draws with.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+}
+
+/// The window draws with its own device what the CPU has culled.
+fn shown_here(stage: &mut Stage) {
+    if let Stage::Software(stage) = stage {
+        stage.shown_by_another();
     }
 }

@@ -1,7 +1,6 @@
 //! The policy that picks a policy: whichever is fastest in this scene, on this machine, now.
 //!
-//! It begins with groups and rays ([`Hroc`]), which need no frame to learn and leave the tree as coarse as
-//! it is. Other ways of culling race against it, a few frames at a time ([`race`]), and the fastest is
+//! It begins with groups and rays ([`Hroc`]), which need no frame to learn. Other ways of culling race against it, a few frames at a time ([`race`]), and the fastest is
 //! kept: the frustum alone, if too little is hidden for asking to pay; on a device dual queries, CHC++ or
 //! a pyramid, if they wait for less. Who races depends on what the scene shows ([`signs`]): where things move, policies that test
 //! each mover apart (*hybrid*, *roc*) come in.
@@ -259,7 +258,7 @@ impl Policy for Auto {
             "race" => {
                 self.race = dial::number(key, value, false..=true)?;
                 if !self.race {
-                    self.running = HROC;
+                    (self.running, self.contest) = (HROC, Race::new(KEYS.len()));
                 }
             }
             _ => return Err(dial::unknown(key, value, &self.dials())),

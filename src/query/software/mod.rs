@@ -153,9 +153,11 @@ impl SoftwareQueries {
         self.simd
     }
 
-    /// Says whether closures record what the app shows: of each object all that it is, and no stand-ins, such
-    /// as an [`OccluderMesh`](crate::scene::OccluderMesh). Then whoever records something, of which nothing
-    /// shows, can be left out ([`QueryBackend::draws_if_seen`]). False at first: boxes have the last word.
+    /// Says whether what the closures record is the picture: of each object all that it is, no stand-ins, such
+    /// as an [`OccluderMesh`](crate::scene::OccluderMesh), and shown as rasterised here, to the bit. Then
+    /// whoever records something, of which nothing shows, can be left out
+    /// ([`QueryBackend::draws_if_seen`]). False at first: boxes have the last word, which allow for another
+    /// renderer's rounding. An app that culls here and draws on a GPU leaves it so.
     pub fn set_true_shapes(&mut self, true_shapes: bool) {
         self.true_shapes = true_shapes;
     }

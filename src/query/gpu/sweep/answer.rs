@@ -205,9 +205,10 @@ impl GpuQueries {
         swept.groups.clear();
         swept.by_slot = false;
         guard::guarded(device, || {
-            if !std::mem::replace(is_uploaded, true) {
+            if !*is_uploaded {
                 boxes::collect(sweep.scene, scratch);
                 self.stats.uploaded += boxes.follow(device, queue, scratch)?;
+                *is_uploaded = true;
             }
             swept.load(device, queue)?;
             let viewport = frame.view.viewport();
