@@ -140,7 +140,7 @@ mod tests {
     /// where it belongs.
     #[test]
     fn every_setting_runs_once_and_its_errors_are_told_apart() {
-        let line = "tradeoff --scale 0.05 --objects 60 --frames 4 --size 160x90 --set flight_end=0.4";
+        let line = "tradeoff --policy dual-query --scale 0.05 --objects 60 --frames 4 --size 160x90 --set flight_end=0.4";
         let flags = Flags::try_parse_from(line.split(' ')).expect("flags");
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("run.jsonl");
