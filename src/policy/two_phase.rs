@@ -25,6 +25,7 @@ mod counts;
 
 use counts::Counts;
 
+use super::near_first::near_first;
 use super::plan::{First, Plan, Targets};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
@@ -407,22 +408,6 @@ impl<P: Plan> TwoPhase<P> {
         self.visible.extend(drawn.filter(|id| cx.scene.objects_store().is_occluder(id.slot() as u32)));
         self.visible.sort_unstable();
     }
-}
-
-/// Orders objects from near to far; what hides nothing comes last.
-fn near_first(cx: &Context<'_>, objects: &mut Vec<ObjectId>, order: &mut Vec<(f32, ObjectId)>) {
-    let (eye, store) = (cx.view.eye(), cx.scene.objects_store());
-    let distance = |id: ObjectId| {
-        let bounds = cx.tree.aabb_of(id.slot() as u32).filter(|_| store.is_occluder(id.slot() as u32));
-        bounds.map_or(f32::INFINITY, |bounds| match eye.w {
-            0.0 => -eye.truncate().dot(bounds.center()),
-            _ => bounds.distance_squared(eye.truncate()),
-        })
-    };
-    order.clear();
-    order.extend(objects.drain(..).map(|id| (distance(id), id)));
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    objects.extend(order.iter().map(|&(_, id)| id));
 }
 
 /// How objects are tested that have no group.

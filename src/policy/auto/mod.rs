@@ -44,7 +44,7 @@ pub struct Auto {
 }
 
 /// The ways, by number; the first is where a race begins, and then they challenge in this order.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Ways {
     hroc: Hroc,
     frustum: FrustumOnly,
@@ -74,6 +74,21 @@ const KEYS: [&str; 7] = [
 ];
 /// The share of the objects that move from which movers are tested apart.
 const MOVERS: f32 = 0.01;
+
+impl Default for Ways {
+    fn default() -> Self {
+        Self {
+            hroc: Hroc::default(),
+            // The tree has become fine for those who ask.
+            frustum: FrustumOnly::from_near_to_far(),
+            hybrid: Hybrid::default(),
+            roc: Roc::default(),
+            dual_query: DualQuery::default(),
+            chc_plus_plus: ChcPlusPlus::default(),
+            hi_z: HiZ::default(),
+        }
+    }
+}
 
 impl Ways {
     fn get(&self, way: usize) -> &dyn Policy {
