@@ -10,14 +10,20 @@ pub fn command(example: &str) -> String {
     command_of(example, std::env::args().skip(1))
 }
 
-/// How everything was drawn.
+/// How everything was drawn on the software backend.
 pub fn setting(flags: &Flags) -> anyhow::Result<String> {
+    setting_on(flags, None)
+}
+
+/// The same on a graphics adapter, if there is one.
+pub fn setting_on(flags: &Flags, adapter: Option<&str>) -> anyhow::Result<String> {
     let (width, height) = flags.size;
     let detail = match flags.detail()?.max_error_px {
         0.0 => "every mesh with all its triangles".to_owned(),
         pixels => format!("levels of detail within {pixels} pixels"),
     };
-    Ok(format!("{width} × {height}, {detail}, on the software backend"))
+    let backend = adapter.unwrap_or("the software backend");
+    Ok(format!("{width} × {height}, {detail}, on {backend}"))
 }
 
 /// A table: a header, and rows of as many cells.

@@ -148,7 +148,9 @@ pub fn read_depth(gpu: &Gpu, depth: &wgpu::Texture, view: &View) -> Nearness {
 
 /// Reads the samples of a view's viewport, all of a pixel together and pixels row by row: of each
 /// `texel` the `word` that an expression in WGSL makes of it. It takes a compute shader: OpenGL
-/// cannot copy depth, and nobody can copy several samples a pixel.
+/// cannot copy depth, and nobody can copy several samples a pixel. All drawing must have ended by
+/// then: Mesa's OpenGL on the CPU (22.3) begins to compute in a submission of its own while it still
+/// draws what is read, if another target was drawn on in between.
 pub fn read_texels(gpu: &Gpu, texture: &wgpu::Texture, view: &View, word: &str) -> Vec<u32> {
     let viewport = view.viewport();
     let samples = view.samples();
@@ -170,6 +172,7 @@ pub fn read_texels(gpu: &Gpu, texture: &wgpu::Texture, view: &View, word: &str) 
         y = viewport.y,
     );
     let device = &gpu.device;
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("a poll");
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
         source: wgpu::ShaderSource::Wgsl(source.into()),

@@ -48,8 +48,11 @@ impl Figure {
         let keys: Vec<Key> = ALGORITHMS.iter().map(|a| Key::new(a.color, a.name)).collect();
         let (width, height) = flags.size;
         let subtitle = format!(
-            "worlds at scale {} · {} frames a scene · software backend · {width} × {height} · seed {}",
-            flags.scale, flags.frames, flags.seed
+            "worlds at scale {} · {} frames a scene · {} · {width} × {height} · seed {}",
+            flags.scale,
+            flags.frames,
+            super::adapter(outcomes).unwrap_or("software backend"),
+            flags.seed
         );
         let rows = outcomes.len().div_ceil(COLUMNS);
         canvas::save(&output.file(self.ending), (WIDTH, ABOVE + PANEL_HEIGHT * rows as u32), |sheet| {

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::Outcome;
 use super::algorithms::{ALGORITHMS, AUTO, FILTERED, HI_Z, HROC, HYBRID, ROC, VFC};
+use super::{Outcome, adapter};
 use support::flags::Flags;
-use support::markdown::{command, known, lost, percent, setting, table};
+use support::markdown::{command, known, lost, percent, setting_on, table};
 use support::table::count;
 
 /// The whole page.
@@ -21,7 +21,7 @@ pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {
         command("paper_tables"),
         flags.scale,
         flags.frames,
-        setting(flags)?,
+        setting_on(flags, adapter(outcomes))?,
         by_scene(outcomes, |outcome, n| {
             let paper = outcome.scene.published.and_then(|p| p.time_over_ref(n));
             let paper = paper.map_or(String::new(), |x| format!(" ({x:.1})"));
@@ -36,6 +36,7 @@ pub fn page(flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<String> {
     }
     page += "\n";
     page += NOTES;
+    page += if adapter(outcomes).is_some() { ON_A_DEVICE } else { ON_THE_CPU };
     page += &lost(outcomes.iter().flat_map(|outcome| &outcome.lanes));
     Ok(page)
 }
@@ -48,12 +49,22 @@ inside the frustum. *Triangles* are those drawn over REF's. *Wrongly culled* is 
 const NOTES: &str = "\
 - NOC draws everything, VFC what meets the view frustum, REF the exact visible set, found beforehand. OF is \
 occluder filtering: only what showed is drawn first in the next frame.
+- The share of hidden objects is taken from what REF draws, which is exact.
+";
+
+const ON_THE_CPU: &str = "\
 - All but HROC without a filter draw only what shows by its geometry (`by_geometry`): an object counts as drawn \
 if a sample of it passes the depth test behind all before it. *Triangles* are all that went to the rasteriser, \
 those of objects that were left out included. HROC without a filter goes by boxes alone, as published.
 - All of this is the CPU's own: rasterising, sweeping and drawing. The paper's figures are of a GPU, where the \
 sweep is nearly free and drawing is not; its worlds are not ours either.
-- The share of hidden objects is taken from what REF draws, which is exact.
+";
+
+const ON_A_DEVICE: &str = "\
+- What is tested is boxes: by their rasterised proxies, by rays, or by a map of farthest depths. Filtering \
+reads an item buffer.
+- A frame's time ends when the device has finished. Drawing, sweeping and culling are in it. The paper's \
+worlds are not ours.
 ";
 
 fn heading(outcome: &Outcome) -> String {

@@ -2,8 +2,8 @@
 //! drawn, the view frustum, CHC++, raster occlusion without a hierarchy, a Hi-Z map, and the exact
 //! visible set, in worlds after the paper's four and in the moving bunnies.
 //!
-//! All run in lockstep on the software backend, each on a tree of its own with the same dials. The
-//! paper's figures are of a GPU: shares and ratios compare, milliseconds do not.
+//! All run in lockstep on the software backend, or with `--backend wgpu` on the GPU, each on a tree of its
+//! own with the same dials. The paper's figures are of a GPU: shares and ratios compare, milliseconds do not.
 
 mod algorithms;
 mod figures;
@@ -12,13 +12,16 @@ mod published;
 mod rows;
 mod scenes;
 
+use anyhow::Context;
+
 use crate::frames;
 use crate::output::Output;
 use algorithms::{ALGORITHMS, FILTERED, REF, VFC};
 use scenes::{SCENES, Scene};
-use support::flags::Flags;
+use support::flags::{Backend, Flags};
 use support::lockstep::Measured;
 use support::report::write_csv;
+use support::stage::{Gpu, Stage};
 
 /// How much of each world is built, unless the command line says otherwise.
 const SCALE: f32 = 0.25;
@@ -33,12 +36,20 @@ pub struct Outcome {
 /// Runs all scenes and writes `hroc.md`, two tables and two figures into `--out`.
 pub fn run(flags: &Flags) -> anyhow::Result<()> {
     let flags = &flags.with_default_scale(SCALE);
+    let gpu = match flags.backend {
+        Backend::Wgpu => Some(Gpu::open()?.with_context(no_adapter)?),
+        Backend::Auto | Backend::Software => None,
+    };
+    let stage = || match &gpu {
+        Some(gpu) => Stage::on(gpu.clone(), flags.detail()?),
+        None => Ok(Stage::software(flags.detail()?)),
+    };
     let frames = SCENES.len() * ALGORITHMS.len() * flags.frames as usize;
     let output = Output::new(flags, "hroc", frames as u64)?;
     let mut outcomes = Vec::new();
     for scene in &SCENES {
-        let lanes =
-            ALGORITHMS.iter().map(|algorithm| algorithm.lane(flags)).collect::<anyhow::Result<_>>()?;
+        let lanes = ALGORITHMS.iter().map(|algorithm| algorithm.lane_on(stage()?, flags));
+        let lanes = lanes.collect::<anyhow::Result<_>>()?;
         let lanes = output.run(scene.build(flags)?, flags, lanes)?;
         let outcome = Outcome { scene, lanes };
         output.say(&outcome.line());
@@ -49,6 +60,18 @@ pub fn run(flags: &Flags) -> anyhow::Result<()> {
     frames::write(&output.file("_frames.csv"), outcomes.iter().flat_map(rows::runs))?;
     figures::write(&output, flags, &outcomes)?;
     output.finish(&markdown::page(flags, &outcomes)?)
+}
+
+/// What draws, if it is not the software backend.
+fn adapter(outcomes: &[Outcome]) -> Option<&str> {
+    outcomes.first()?.lanes[REF].summary.adapter.as_deref()
+}
+
+fn no_adapter() -> String {
+    format!(
+        "--backend wgpu: no graphics adapter was found; {}, or leave the flag out: the CPU draws",
+        Gpu::remedy()
+    )
 }
 
 impl Outcome {
