@@ -3,7 +3,8 @@
 use bytemuck::{bytes_of, cast_slice, try_cast_slice};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, Queue};
 
-use super::asked::{Asked, SEEN, exactly};
+use super::array::DeviceArray;
+use super::asked::{Asked, SEEN};
 use super::boxes::{self, PackedBox};
 use super::grove::{Groups, Grove};
 use super::mirror::Mirrored;
@@ -44,7 +45,7 @@ pub(in crate::query::gpu) struct Sweeps {
 pub(super) struct Swept {
     ticket: Option<Ticket>,
     pub(super) ids: Vec<ObjectId>,
-    slots: Buffer,
+    slots: DeviceArray<u32>,
     pub(super) asked: Asked,
     /// Whether verdicts are those of slots, instead of the objects listed here.
     by_slot: bool,
@@ -116,7 +117,7 @@ impl Sweeps {
                     }
                 }
                 if let Some(grove) = &self.grove {
-                    let below = verdicts.get(swept.asked.words()..).unwrap_or(&[]);
+                    let below = verdicts.get(swept.asked.found().bound()..).unwrap_or(&[]);
                     grove.found(&swept.groups, below, &self.boxes, &mut found);
                 }
             });
@@ -173,7 +174,7 @@ impl GpuQueries {
             swept.asked.resize(device, sweep.scene.slot_bound())?;
             swept.claim(device, 0);
             let mut tape = frame::tape(&mut frame.encoder, device, &mut self.clock);
-            let verdicts = swept.asked.verdicts();
+            let verdicts = swept.asked.found();
             owners.record(&mut tape, (&self.uniforms, ids), verdicts, frame.view.viewport());
             swept.copy_verdicts(tape.encoder);
             self.stats.sweeps += 1;
@@ -231,13 +232,12 @@ impl GpuQueries {
             swept.claim(device, grove.as_ref().map_or(0, |grove| grove.bytes()));
             if let Some(grove) = grove {
                 let rays = passes.rays(device, &self.config.shaders, several)?;
-                let to = (swept.read_back.buffer(), 4 * swept.asked.words() as u64);
+                let to = (swept.read_back.buffer(), swept.asked.found().bytes());
                 grove.record(&mut tape, rays, bound, &swept.groups, viewport, to);
                 self.stats.groups += u64::from(swept.groups.count());
                 self.stats.swept += swept.groups.objects();
             }
-            let slots = exactly(&swept.slots, swept.asked.count(), size_of::<u32>());
-            passes.project.record(&mut tape, &bound.view, boxes.binding(), slots, &swept.asked);
+            passes.project.record(&mut tape, &bound.view, boxes.binding(), swept.slots.all(), &swept.asked);
             if let Some(test) = test {
                 let by_pyramid = test == SweepTest::HiZ;
                 passes.record_test(&mut tape, bound, &swept.asked, viewport, by_pyramid);
@@ -285,23 +285,21 @@ impl Swept {
     /// Uploads which objects are asked about. The upload happens when the encoder is submitted.
     fn load(&mut self, device: &Device, queue: &Queue) -> Result<(), Error> {
         self.asked.resize(device, self.ids.len())?;
-        if 4 * self.ids.len() as u64 > self.slots.size() {
-            self.slots = slots(device, self.ids.len() + self.ids.len() / 2);
-        }
+        self.slots.resize(device, self.ids.len())?;
         let listed: Vec<u32> = self.ids.iter().map(|id| id.slot() as u32).collect();
-        queue.write_buffer(&self.slots, 0, cast_slice(&listed));
+        queue.write_buffer(self.slots.buffer(), 0, cast_slice(&listed));
         Ok(())
     }
 
     /// Makes room for the verdicts to come back, and for so many bytes after them.
     fn claim(&mut self, device: &Device, more: u64) {
-        self.read_back.claim(device, 4 * self.asked.words() as u64 + more);
+        self.read_back.claim(device, self.asked.found().bytes() + more);
     }
 
     /// Records the way of the verdicts into memory that can be read.
     fn copy_verdicts(&self, encoder: &mut CommandEncoder) {
-        let (verdicts, bytes) = (self.asked.verdicts().buffer, 4 * self.asked.words() as u64);
-        encoder.copy_buffer_to_buffer(verdicts, 0, self.read_back.buffer(), 0, bytes);
+        let verdicts = self.asked.found();
+        encoder.copy_buffer_to_buffer(verdicts.buffer(), 0, self.read_back.buffer(), 0, verdicts.bytes());
     }
 }
 
@@ -312,7 +310,7 @@ fn free(sweeps: &mut Vec<Swept>, device: &Device) -> usize {
         sweeps.push(Swept {
             ticket: None,
             ids: Vec::new(),
-            slots: slots(device, 64),
+            slots: DeviceArray::written(device, "tercet swept slots"),
             asked: Asked::new(device),
             by_slot: false,
             groups: Groups::new(device),
@@ -342,13 +340,4 @@ fn list(sweep: &Sweep<'_>, stack: &mut Vec<(NodeId, PlaneMask)>, ids: &mut Vec<O
         ids.extend(inside.map(|(block, lane)| store.id(block.slots[lane])));
         stack.extend(tree.children(node).into_iter().flatten().map(|child| (child, mask)));
     }
-}
-
-fn slots(device: &Device, count: usize) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some("tercet swept slots"),
-        size: 4 * count.max(1) as u64,
-        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
 }

@@ -4,11 +4,12 @@
 use std::ops::Range;
 
 use bytemuck::cast_slice;
-use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, Queue};
+use wgpu::{Buffer, Device, Queue};
 
-use super::asked::{Asked, SEEN, exactly};
+use super::array::DeviceArray;
+use super::asked::{self, Asked, SEEN, Verdicts};
 use super::boxes::PackedBox;
-use super::enclose::{Enclose, Nodes};
+use super::enclose::{self, Enclose, Nodes};
 use super::flat::FlatTree;
 use super::mirror::Mirrored;
 use super::rays::{self, Enlist, Rays};
@@ -18,8 +19,7 @@ use crate::geom::{Frustum, Viewport};
 use crate::query::Sweep;
 use crate::query::gpu::clock::Tape;
 use crate::query::gpu::counter::compiled;
-use crate::query::gpu::guard::failed;
-use crate::query::gpu::rectangles::Draws;
+use crate::query::gpu::rectangles::{Draws, Listed};
 use crate::query::gpu::shaders::Shaders;
 use crate::scene::{ObjectId, ObjectSet, Scene};
 
@@ -33,7 +33,7 @@ pub(super) struct Grove {
     /// By place.
     objects: Asked,
     /// What was known of them before any ray.
-    first: Buffer,
+    first: Verdicts,
     /// The same objects.
     ids: Vec<ObjectId>,
     /// Whether all of it is of this frame.
@@ -43,9 +43,8 @@ pub(super) struct Grove {
 /// The groups of one sweep; buffers are reused.
 #[derive(Debug)]
 pub(super) struct Groups {
-    indices: Buffer,
-    listed: Buffer,
-    count: u32,
+    indices: DeviceArray<u32>,
+    listed: DeviceArray<Listed>,
     /// The places of the objects below them, and what these must meet.
     below: Vec<Range<usize>>,
     frustum: Option<Frustum>,
@@ -57,9 +56,9 @@ impl Grove {
             tree: FlatTree::new(device),
             enclose: Enclose::new(device, &compiled(device, &shaders.enclose)),
             enlist: Enlist::new(device, &compiled(device, &shaders.enlist)),
-            nodes: Nodes::new(device),
+            nodes: enclose::nodes(device),
             objects: Asked::new(device),
-            first: words(device, 64, BufferUsages::COPY_SRC),
+            first: asked::verdicts(device),
             ids: Vec::new(),
             is_ready: false,
         }
@@ -87,19 +86,17 @@ impl Grove {
         }
         let device = tape.device;
         let uploaded = self.tree.follow(device, queue, scene, &[])?;
-        self.nodes.resize(device, self.tree.node_count())?;
+        self.nodes.resize(device, self.tree.node_count() as usize)?;
         let count = self.tree.slots().len();
         self.objects.resize(device, count)?;
-        if 4 * count as u64 > self.first.size() {
-            self.first = words(device, count + count / 2, BufferUsages::COPY_SRC);
-        }
+        self.first.resize(device, count)?;
         let store = scene.objects_store();
         self.ids.clear();
         self.ids.extend(self.tree.slots().iter().map(|&slot| store.id(slot)));
         self.enclose.record(tape, &bound.view, &self.tree, &self.nodes);
         project.record(tape, &bound.view, boxes.binding(), self.tree.places(), &self.objects);
-        let verdicts = self.objects.verdicts();
-        tape.encoder.copy_buffer_to_buffer(verdicts.buffer, 0, &self.first, 0, self.bytes());
+        let verdicts = self.objects.found().buffer();
+        tape.encoder.copy_buffer_to_buffer(verdicts, 0, self.first.buffer(), 0, self.bytes());
         self.is_ready = true;
         Ok(uploaded)
     }
@@ -115,18 +112,17 @@ impl Grove {
         viewport: Viewport,
         (to, at): (&Buffer, u64),
     ) {
-        let verdicts = self.objects.verdicts().buffer;
-        tape.encoder.copy_buffer_to_buffer(&self.first, 0, verdicts, 0, self.bytes());
-        let indices = exactly(&groups.indices, groups.count, size_of::<u32>());
-        self.enlist.record(tape, &self.nodes, (indices, groups.count), &groups.listed);
-        let list = (&groups.listed, Draws::Count(groups.count));
+        let verdicts = self.objects.found().buffer();
+        tape.encoder.copy_buffer_to_buffer(self.first.buffer(), 0, verdicts, 0, self.bytes());
+        self.enlist.record(tape, &self.nodes, groups.indices.all(), &groups.listed);
+        let list = (groups.listed.buffer(), Draws::Count(groups.count()));
         rays.record(tape, &bound.frame, (&self.nodes, &self.objects), list, viewport);
         tape.encoder.copy_buffer_to_buffer(verdicts, 0, to, at, self.bytes());
     }
 
     /// The bytes of all verdicts.
     pub(super) fn bytes(&self) -> u64 {
-        self.objects.verdicts().size.map_or(0, std::num::NonZeroU64::get)
+        self.objects.found().bytes()
     }
 
     /// Adds those objects below some groups that rays, or nothing, have found in sight.
@@ -151,9 +147,8 @@ impl Grove {
 impl Groups {
     pub(super) fn new(device: &Device) -> Self {
         Self {
-            indices: words(device, 16, BufferUsages::STORAGE),
-            listed: rays::list(device, 16),
-            count: 0,
+            indices: DeviceArray::written(device, "tercet groups"),
+            listed: rays::list(device),
             below: Vec::new(),
             frustum: None,
         }
@@ -166,7 +161,7 @@ impl Groups {
 
     /// How many there are.
     pub(super) fn count(&self) -> u32 {
-        self.count
+        self.listed.count()
     }
 
     /// How many objects are below them.
@@ -191,25 +186,9 @@ impl Groups {
         self.below.clear();
         self.below.extend(asked.map(|&group| grove.tree.below(tree, group)));
         self.frustum = Some(sweep.frustum.clone());
-        self.count = indices.len() as u32;
-        if 4 * indices.len() as u64 > self.indices.size() {
-            let room = indices.len() + indices.len() / 2;
-            (self.indices, self.listed) =
-                (words(device, room, BufferUsages::STORAGE), rays::list(device, room));
-        }
-        if self.listed.size() > device.limits().max_storage_buffer_binding_size {
-            return Err(failed(format!("it cannot bind {} groups", self.count)));
-        }
-        queue.write_buffer(&self.indices, 0, cast_slice(&indices));
+        self.indices.resize(device, indices.len())?;
+        self.listed.resize(device, indices.len())?;
+        queue.write_buffer(self.indices.buffer(), 0, cast_slice(&indices));
         Ok(())
     }
-}
-
-fn words(device: &Device, count: usize, usage: BufferUsages) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some("tercet groups"),
-        size: 4 * count.max(1) as u64,
-        usage: usage | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
 }
