@@ -317,6 +317,7 @@ impl GpuQueries {
     /// Forgets the last frame.
     fn restart(&mut self) {
         self.forget();
+        self.sweeps.iter_mut().for_each(Sweeps::restart);
         self.frame = None;
         self.stats = GpuStats::default();
     }

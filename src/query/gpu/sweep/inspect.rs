@@ -32,7 +32,7 @@ impl GpuQueries {
     pub fn inspect_proxies(&mut self, sweep: &Sweep<'_>) -> Result<Vec<(ObjectId, Question)>, Error> {
         let index = self.record_looks(sweep, None)?;
         let swept = &self.sweeps.as_ref().expect("it was recorded").sweeps[index];
-        let (ids, asked) = (swept.ids.clone(), &swept.asked);
+        let (ids, asked) = (swept.ids.clone(), &swept.listed.as_ref().expect("it was recorded").asked);
         let [proxies, verdicts] = [asked.proxies(), asked.verdicts()].map(|binding| binding.buffer.clone());
         let proxies: Vec<PackedProxy> = self.read_now(&proxies, ids.len())?;
         let verdicts: Vec<u32> = self.read_now(&verdicts, ids.len())?;
@@ -51,11 +51,12 @@ impl GpuQueries {
     /// [`Error::Target`] outside a frame; [`Error::Device`] for a viewport whose pyramid the device
     /// cannot bind, and what it reports.
     pub fn inspect_pyramid(&mut self) -> Result<Vec<Level>, Error> {
-        self.bind_sweeps()?;
+        self.bind_looks()?;
         let frame = self.frame.as_mut().ok_or_else(frame::not_begun)?;
         let sweeps = self.sweeps.as_mut().expect("they are bound");
-        let passes = sweeps.passes[usize::from(frame.view.samples() > 1)].as_mut().expect("made when bound");
-        let bound = sweeps.bound.as_ref().expect("they are bound");
+        let looks = sweeps.looks.as_mut().expect("they are bound");
+        let passes = looks.passes[usize::from(frame.view.samples() > 1)].as_mut().expect("made when bound");
+        let bound = looks.bound.as_ref().expect("they are bound");
         let pyramid = &mut passes.pyramid;
         guard::guarded(&self.device, || {
             let fits = pyramid.resize(&self.device, frame.view.viewport());

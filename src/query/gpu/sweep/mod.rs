@@ -23,7 +23,8 @@
 //! | `grove` | what sweeps by rays keep for a frame |
 //! | `pyramid`, `hi_z` | the test of Rákos 2010: compare with the farthest depth around |
 //! | `owners` | who owns a sample, by an item buffer |
-//! | `answer` | sweeps of a policy: one read-back each |
+//! | `answer`, `swept` | sweeps of a policy: one read-back each |
+//! | `looks` | those that look at boxes |
 //! | `inspect` | what the device has made, to look at |
 
 pub(super) mod answer;
@@ -35,6 +36,7 @@ pub(super) mod flat;
 mod grove;
 mod hi_z;
 mod inspect;
+mod looks;
 pub(super) mod mirror;
 pub(super) mod owners;
 pub(super) mod project;
@@ -42,6 +44,7 @@ pub(super) mod pyramid;
 pub(super) mod raster;
 pub(super) mod rays;
 pub(super) mod stage;
+mod swept;
 pub(super) mod view;
 
 use wgpu::{BindGroup, Buffer, Device, TextureView};
@@ -58,7 +61,6 @@ use crate::Error;
 use crate::geom::Viewport;
 use asked::Asked;
 use hi_z::HiZ;
-use owners::Owners;
 pub(super) use project::Project;
 use pyramid::Pyramid;
 use raster::Raster;
@@ -75,8 +77,6 @@ pub(super) struct Passes {
     pub(super) raster: Raster,
     /// Made when first needed.
     rays: Option<Rays>,
-    /// The same.
-    owners: Option<Owners>,
     pub(super) pyramid: Pyramid,
     pub(super) hi_z: HiZ,
 }
@@ -103,7 +103,6 @@ impl Passes {
                 project: Project::new(device, &compiled(device, &shaders.project)),
                 raster: Raster::new(device, &module(&shaders.sweep_raster), depth, Of::Proxies),
                 rays: None,
-                owners: None,
                 pyramid: Pyramid::new(device, &module(&shaders.build_pyramid), depth),
                 hi_z: HiZ::new(device, &module(&shaders.sweep_hi_z), depth),
             }
@@ -122,17 +121,6 @@ impl Passes {
             none => Ok(none.insert(guarded(device, || {
                 let module = compiled(device, shaders.sweep_rays.source(multisampled));
                 Rays::new(device, &module, DepthAs::texture(multisampled))
-            })?)),
-        }
-    }
-
-    /// The pass that looks through item buffers.
-    fn owners(&mut self, device: &Device, shaders: &Shaders, several: bool) -> Result<&Owners, Error> {
-        match &mut self.owners {
-            Some(owners) => Ok(owners),
-            none => Ok(none.insert(guarded(device, || {
-                let module = compiled(device, shaders.sweep_owners.source(several));
-                Owners::new(device, &module, several)
             })?)),
         }
     }

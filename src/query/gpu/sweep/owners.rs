@@ -4,7 +4,7 @@
 //! depth test. So nothing is drawn twice, and each sample has one owner: of several objects at the same
 //! depth, the one that was drawn last.
 
-use wgpu::{Buffer, Device, ShaderModule, TextureFormat, TextureUsages, TextureView};
+use wgpu::{Buffer, Device, TextureFormat, TextureUsages, TextureView};
 
 use super::asked::Verdicts;
 use super::stage::Stage;
@@ -12,15 +12,23 @@ use crate::Error;
 use crate::geom::Viewport;
 use crate::query::gpu::bind::DepthAs;
 use crate::query::gpu::clock::Tape;
+use crate::query::gpu::counter::compiled;
+use crate::query::gpu::guard::guarded;
+use crate::query::gpu::shaders::Shaders;
 
 /// The pass.
 #[derive(Debug)]
 pub(super) struct Owners(Stage);
 
 impl Owners {
-    pub(super) fn new(device: &Device, module: &ShaderModule, multisampled: bool) -> Self {
-        let ids = DepthAs::Ids { multisampled };
-        Self(Stage::on_texture(device, module, ("tercet owners", "look"), &[(2, true)], ids))
+    /// # Errors
+    /// [`Error::Device`] if the device refuses it.
+    pub(super) fn new(device: &Device, shaders: &Shaders, multisampled: bool) -> Result<Self, Error> {
+        guarded(device, || {
+            let module = compiled(device, shaders.sweep_owners.source(multisampled));
+            let ids = DepthAs::Ids { multisampled };
+            Self(Stage::on_texture(device, &module, ("tercet owners", "look"), &[(2, true)], ids))
+        })
     }
 
     /// Records the looking through an item buffer: verdicts are by slot, and are none at first.
