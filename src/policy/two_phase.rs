@@ -343,13 +343,9 @@ impl<P: Plan> Policy for TwoPhase<P> {
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
         match key {
-            "occluder_filtering" => {
-                self.occluder_filtering = dial::choice(key, value, &[("true", true), ("false", false)])?;
-            }
-            "by_geometry" => {
-                self.by_geometry = dial::choice(key, value, &[("true", true), ("false", false)])?
-            }
-            "near_first" => self.near_first = dial::choice(key, value, &[("true", true), ("false", false)])?,
+            "occluder_filtering" => self.occluder_filtering = dial::switch(key, value)?,
+            "by_geometry" => self.by_geometry = dial::switch(key, value)?,
+            "near_first" => self.near_first = dial::switch(key, value)?,
             "parts" => self.parts = dial::number(key, value, 1..=64)?,
             _ if self.plan.set(key, value)? => {}
             _ => return Err(dial::unknown(key, value, &self.dials())),
