@@ -131,8 +131,8 @@ impl GpuQueries {
             let index = Swept::free(sweeps, device);
             let swept = &mut sweeps[index];
             swept.is_for_owners = true;
-            swept.ids.clear();
-            swept.ids.extend_from_slice(sweep.loose);
+            swept.targets.ids.clear();
+            swept.targets.ids.extend_from_slice(sweep.loose);
             let verdicts = swept.owned.get_or_insert_with(|| asked::verdicts(device));
             verdicts.resize(device, sweep.scene.slot_bound())?;
             swept.read_back.claim(device, verdicts.bytes());
@@ -140,7 +140,7 @@ impl GpuQueries {
             owners.record(&mut tape, (&self.uniforms, ids), verdicts, frame.view.viewport());
             copy_verdicts(tape.encoder, verdicts, &swept.read_back);
             self.stats.sweeps += 1;
-            self.stats.swept += swept.ids.len() as u64;
+            self.stats.swept += sweep.loose.len() as u64;
             Ok(Some(index))
         })?
     }

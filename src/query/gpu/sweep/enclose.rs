@@ -27,8 +27,10 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroup, BufferUsages, Device, ShaderModule};
 
 use super::array::DeviceArray;
+use super::asked::SEEN;
 use super::flat::FlatTree;
 use super::stage::Stage;
+use crate::geom::PixelRect;
 use crate::query::gpu::clock::Tape;
 
 /// The twin of `Node` in `shaders/shared/nodes.wgsl`.
@@ -44,6 +46,14 @@ pub(in crate::query::gpu) struct PackedNode {
     parent: u32,
     verdict: u32,
     unused: u32,
+}
+
+impl PackedNode {
+    /// The pixels where what lies below may own samples; None if the device cannot say.
+    pub(super) fn pixels(&self) -> Option<PixelRect> {
+        let [x0, y0, x1, y1] = self.rect;
+        (self.verdict != SEEN).then_some(PixelRect { x0, y0, x1, y1 })
+    }
 }
 
 /// The nodes of a tree on the screen.

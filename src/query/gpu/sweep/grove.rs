@@ -22,6 +22,7 @@ use crate::query::gpu::counter::compiled;
 use crate::query::gpu::rectangles::{Draws, Listed};
 use crate::query::gpu::shaders::Shaders;
 use crate::scene::{ObjectId, ObjectSet, Scene};
+use crate::tree::NodeId;
 
 /// The tree on the device, with what its objects' proxies are and where its nodes lie.
 #[derive(Debug)]
@@ -120,6 +121,11 @@ impl Grove {
         tape.encoder.copy_buffer_to_buffer(verdicts, 0, to, at, self.bytes());
     }
 
+    /// Where nodes lie on the screen, by index.
+    pub(super) fn nodes(&self) -> &Nodes {
+        &self.nodes
+    }
+
     /// The bytes of all verdicts.
     pub(super) fn bytes(&self) -> u64 {
         self.objects.found().bytes()
@@ -169,7 +175,7 @@ impl Groups {
         self.below.iter().map(|range| range.len() as u64).sum()
     }
 
-    /// Uploads those of a sweep that hold something. The upload happens when the encoder is submitted.
+    /// Uploads those of a sweep into which rays are cast. The upload happens when the encoder is submitted.
     ///
     /// # Errors
     /// [`Error::Device`] if the device cannot bind so many.
@@ -179,12 +185,11 @@ impl Groups {
         queue: &Queue,
         grove: &Grove,
         sweep: &Sweep<'_>,
+        groups: &[NodeId],
     ) -> Result<(), Error> {
-        let tree = sweep.scene.tree();
-        let asked = sweep.groups.iter().filter(|&&group| tree.count(group) > 0);
-        let indices: Vec<u32> = asked.clone().map(|group| group.index).collect();
+        let indices: Vec<u32> = groups.iter().map(|group| group.index).collect();
         self.below.clear();
-        self.below.extend(asked.map(|&group| grove.tree.below(tree, group)));
+        self.below.extend(groups.iter().map(|&group| grove.tree.below(sweep.scene.tree(), group)));
         self.frustum = Some(sweep.frustum.clone());
         self.indices.resize(device, indices.len())?;
         self.listed.resize(device, indices.len())?;

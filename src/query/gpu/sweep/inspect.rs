@@ -5,12 +5,15 @@ use bytemuck::{Pod, pod_collect_to_vec, try_cast_slice};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, MapMode};
 
 use super::asked::{OUTSIDE, SEEN};
+use super::enclose::PackedNode;
+use super::looks::Looks;
 use crate::Error;
-use crate::geom::Question;
-use crate::query::Sweep;
+use crate::geom::{PixelRect, Question};
 use crate::query::gpu::pack::PackedProxy;
 use crate::query::gpu::{GpuQueries, frame, guard};
+use crate::query::{Sweep, SweepTest};
 use crate::scene::ObjectId;
+use crate::tree::NodeId;
 
 /// A level of the pyramid of farthest depths.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +35,8 @@ impl GpuQueries {
     pub fn inspect_proxies(&mut self, sweep: &Sweep<'_>) -> Result<Vec<(ObjectId, Question)>, Error> {
         let index = self.record_looks(sweep, None)?;
         let swept = &self.sweeps.as_ref().expect("it was recorded").sweeps[index];
-        let (ids, asked) = (swept.ids.clone(), &swept.listed.as_ref().expect("it was recorded").asked);
+        let (ids, asked) =
+            (swept.targets.ids.clone(), &swept.listed.as_ref().expect("it was recorded").asked);
         let [proxies, verdicts] = [asked.proxies(), asked.verdicts()].map(|binding| binding.buffer.clone());
         let proxies: Vec<PackedProxy> = self.read_now(&proxies, ids.len())?;
         let verdicts: Vec<u32> = self.read_now(&verdicts, ids.len())?;
@@ -42,6 +46,22 @@ impl GpuQueries {
             _ => Question::Ask(proxy.unpacked()),
         };
         Ok(ids.into_iter().zip(proxies.into_iter().zip(verdicts).map(question)).collect())
+    }
+
+    /// Into which groups a sweep by rays casts them, and over which pixels of the viewport: those of the sweep,
+    /// and what stands for such as are opened. None for the pixels of a group that the device cannot place:
+    /// its rays would go everywhere. Blocks.
+    ///
+    /// # Errors
+    /// [`Error::Target`] outside a frame; what the device reports.
+    pub fn inspect_groups(&mut self, sweep: &Sweep<'_>) -> Result<Vec<(NodeId, Option<PixelRect>)>, Error> {
+        let index = self.record_looks(sweep, Some(SweepTest::Rays))?;
+        let sweeps = self.sweeps.as_ref().expect("it was recorded");
+        let groups = sweeps.sweeps[index].targets.groups.clone();
+        let Some(nodes) = sweeps.looks.as_ref().and_then(Looks::nodes) else { return Ok(Vec::new()) };
+        let (buffer, count) = (nodes.buffer().clone(), nodes.count() as usize);
+        let nodes: Vec<PackedNode> = self.read_now(&buffer, count)?;
+        Ok(groups.into_iter().map(|group| (group, nodes[group.index()].pixels())).collect())
     }
 
     /// The pyramid of what has been drawn so far, from half the viewport's size down to one texel.

@@ -4,16 +4,18 @@ use bytemuck::bytes_of;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device};
 
 use super::boxes::{self, PackedBox};
+use super::enclose::Nodes;
 use super::grove::{Groups, Grove};
 use super::mirror::Mirrored;
 use super::swept::{Listed, Swept, copy_verdicts};
+use super::targets::Targets;
 use super::view::PackedView;
 use super::{Bound, Passes};
 use crate::Error;
 use crate::geom::PlaneMask;
 use crate::query::gpu::{GpuQueries, frame, guard};
 use crate::query::{Sweep, SweepTest};
-use crate::scene::{ObjectId, ObjectSet};
+use crate::scene::ObjectSet;
 use crate::tree::NodeId;
 
 /// What these sweeps need.
@@ -60,6 +62,11 @@ impl Looks {
         self.grove.iter_mut().for_each(Grove::forget);
     }
 
+    /// The tree's nodes on the screen, if rays were cast.
+    pub(super) fn nodes(&self) -> Option<&Nodes> {
+        self.grove.as_ref().map(Grove::nodes)
+    }
+
     /// Adds those objects below some groups that the tree's verdicts are in favour of.
     pub(super) fn found_below(&self, groups: &Groups, verdicts: &[u32], found: &mut ObjectSet) {
         if let Some(grove) = &self.grove {
@@ -85,13 +92,12 @@ impl GpuQueries {
         let several = frame.view.samples() > 1;
         let passes = passes[usize::from(several)].as_mut().expect("made when bound");
         let bound = bound.as_ref().expect("they are bound");
-        let by_rays = test == Some(SweepTest::Rays) && !sweep.groups.is_empty();
-        let one_by_one = Sweep { groups: if by_rays { &[] } else { sweep.groups }, ..*sweep };
         guard::guarded(device, || {
             let index = Swept::free(&mut sweeps.sweeps, device);
             let swept = &mut sweeps.sweeps[index];
             swept.is_for_owners = false;
-            list(&one_by_one, stack, &mut swept.ids);
+            swept.targets.list(sweep, test == Some(SweepTest::Rays), stack);
+            let Targets { groups, ids } = &swept.targets;
             let listed = swept.listed.get_or_insert_with(|| Listed::new(device));
             listed.groups.clear();
             if !*is_uploaded {
@@ -99,10 +105,10 @@ impl GpuQueries {
                 self.stats.uploaded += boxes.follow(device, queue, scratch)?;
                 *is_uploaded = true;
             }
-            listed.load(device, queue, &swept.ids)?;
+            listed.load(device, queue, ids)?;
             let viewport = frame.view.viewport();
             let mut tape = frame::tape(&mut frame.encoder, device, &mut self.clock);
-            let grove = if by_rays {
+            let grove = if !groups.is_empty() {
                 let shaders = &self.config.shaders;
                 let grove = match grove {
                     Some(grove) => grove,
@@ -112,7 +118,7 @@ impl GpuQueries {
                 passes.rays(device, shaders, several)?;
                 let making = (&passes.project, bound);
                 self.stats.uploaded += grove.make_ready(&mut tape, queue, making, boxes, sweep.scene)?;
-                listed.groups.load(device, queue, grove, sweep)?;
+                listed.groups.load(device, queue, grove, sweep, groups)?;
                 Some(grove)
             } else {
                 None
@@ -135,7 +141,7 @@ impl GpuQueries {
             }
             copy_verdicts(tape.encoder, verdicts, &swept.read_back);
             self.stats.sweeps += 1;
-            self.stats.swept += swept.ids.len() as u64;
+            self.stats.swept += ids.len() as u64;
             Ok(index)
         })?
     }
@@ -163,27 +169,5 @@ impl GpuQueries {
             passes.bind(&self.device, &looks.view, &self.uniforms, frame.targets.readable_depth())
         })?);
         Ok(())
-    }
-}
-
-/// Lists the objects of a sweep that meet the frustum: those of groups by walking down, with the
-/// planes that their nodes cross.
-fn list(sweep: &Sweep<'_>, stack: &mut Vec<(NodeId, PlaneMask)>, ids: &mut Vec<ObjectId>) {
-    let (tree, store, frustum) = (sweep.scene.tree(), sweep.scene.objects_store(), sweep.frustum);
-    ids.clear();
-    ids.extend(sweep.loose.iter().filter(|&&id| {
-        let bounds = store.slot(id).and_then(|slot| tree.aabb_of(slot));
-        bounds.is_some_and(|bounds| frustum.intersects(&bounds))
-    }));
-    stack.clear();
-    stack.extend(sweep.groups.iter().map(|&group| (group, PlaneMask::ALL)));
-    while let Some((node, mask)) = stack.pop() {
-        if tree.count(node) == 0 {
-            continue;
-        }
-        let Some(mask) = frustum.classify(&tree.bounds(node), mask) else { continue };
-        let inside = tree.own_inside(node, frustum, mask);
-        ids.extend(inside.map(|(block, lane)| store.id(block.slots[lane])));
-        stack.extend(tree.children(node).into_iter().flatten().map(|child| (child, mask)));
     }
 }

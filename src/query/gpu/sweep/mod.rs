@@ -24,7 +24,7 @@
 //! | `pyramid`, `hi_z` | the test of Rákos 2010: compare with the farthest depth around |
 //! | `owners` | who owns a sample, by an item buffer |
 //! | `answer`, `swept` | sweeps of a policy: one read-back each |
-//! | `looks` | those that look at boxes |
+//! | `looks`, `targets` | those that look at boxes, and what they look at |
 //! | `inspect` | what the device has made, to look at |
 
 pub(super) mod answer;
@@ -45,6 +45,7 @@ pub(super) mod raster;
 pub(super) mod rays;
 pub(super) mod stage;
 mod swept;
+mod targets;
 pub(super) mod view;
 
 use wgpu::{BindGroup, Buffer, Device, TextureView};

@@ -7,6 +7,7 @@ use super::array::DeviceArray;
 use super::asked::{Asked, SEEN, Verdicts};
 use super::grove::Groups;
 use super::looks::Looks;
+use super::targets::Targets;
 use crate::Error;
 use crate::query::Ticket;
 use crate::query::gpu::read_back::ReadBack;
@@ -16,8 +17,7 @@ use crate::scene::{ObjectId, ObjectSet};
 #[derive(Debug)]
 pub(super) struct Swept {
     pub(super) ticket: Option<Ticket>,
-    /// The objects that it is about, but for those below groups.
-    pub(super) ids: Vec<ObjectId>,
+    pub(super) targets: Targets,
     /// What looks at boxes, made by the first sweep that does.
     pub(super) listed: Option<Listed>,
     /// Verdicts by slot, made by the first sweep for owners.
@@ -41,7 +41,7 @@ impl Swept {
     fn new(device: &Device) -> Self {
         Self {
             ticket: None,
-            ids: Vec::new(),
+            targets: Targets::default(),
             listed: None,
             owned: None,
             is_for_owners: false,
@@ -60,7 +60,7 @@ impl Swept {
 
     /// Adds the objects that these verdicts are in favour of.
     pub(super) fn read(&self, verdicts: &[u32], looks: Option<&Looks>, found: &mut ObjectSet) {
-        for (index, &id) in self.ids.iter().enumerate() {
+        for (index, &id) in self.targets.ids.iter().enumerate() {
             let index = if self.is_for_owners { id.slot() } else { index };
             if verdicts.get(index) == Some(&SEEN) {
                 found.insert(id);

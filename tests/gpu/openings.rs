@@ -1,0 +1,118 @@
+//! Rays are not cast over the whole screen: groups that hold the eye, or cover more than a share of the
+//! screen, are opened before. What is handed to the device is looked at, sweep by sweep.
+
+use tercet::geom::{Projected, Proxy, View, Viewport, project};
+use tercet::policy;
+use tercet::query::gpu::{GpuConfig, GpuQueries};
+use tercet::query::{Answer, DrawTime, QueryBackend, Sweep, SweepTest, Ticket, Wait, Want};
+use tercet::scene::{ObjectRef, Scene, SceneConfig};
+use tercet::tree::TreeConfig;
+use tercet::{Culler, Error, worlds};
+
+use crate::renderer::Renderer;
+use crate::stage::Stage;
+use crate::support::{depth_texture, gpus, targets};
+
+const SCREEN: Viewport = Viewport::new(96, 54);
+
+/// A backend, and what it is asked to cast rays into.
+struct Watched {
+    queries: GpuQueries,
+    share: f32,
+    groups: usize,
+    /// Groups that hold the eye, or may; and those beyond the share.
+    near: usize,
+    large: usize,
+}
+
+impl Watched {
+    fn look(&mut self, sweep: &Sweep<'_>) -> Result<(), Error> {
+        let screen = sweep.view.viewport();
+        let most = self.share * (screen.width * screen.height) as f32;
+        // On the device a rectangle has room for its errors, and ends at whole pixels.
+        let room = 4.0 * (screen.width + screen.height) as f32;
+        for (group, rect) in self.queries.inspect_groups(sweep)? {
+            self.groups += 1;
+            let is_large = match project(&sweep.scene.tree().bounds(group), sweep.view) {
+                Projected::Rect(rect) => rect.area() > most,
+                Projected::Near => true,
+                Projected::Outside => false,
+            };
+            self.near += usize::from(rect.is_none());
+            self.large += usize::from(is_large || rect.is_some_and(|rect| rect.area() as f32 > most + room));
+        }
+        Ok(())
+    }
+}
+
+impl QueryBackend for Watched {
+    type Pass = wgpu::RenderPass<'static>;
+
+    fn name(&self) -> &'static str {
+        self.queries.name()
+    }
+
+    fn can_block(&self) -> bool {
+        self.queries.can_block()
+    }
+
+    fn begin(&mut self, view: &View) -> Result<(), Error> {
+        self.queries.begin(view)
+    }
+
+    fn draw(&mut self, record: impl FnOnce(&mut Self::Pass)) -> Result<(), Error> {
+        self.queries.draw(record)
+    }
+
+    fn ask(&mut self, ticket: Ticket, boxes: &[Proxy], want: Want) -> Result<(), Error> {
+        self.queries.ask(ticket, boxes, want)
+    }
+
+    fn sweep(&mut self, ticket: Ticket, sweep: &Sweep<'_>) -> Result<(), Error> {
+        if sweep.test == SweepTest::Rays {
+            self.look(sweep)?;
+        }
+        self.queries.sweep(ticket, sweep)
+    }
+
+    fn answers(&mut self, wait: Wait, deliver: impl FnMut(Ticket, Answer<'_>)) -> Result<(), Error> {
+        self.queries.answers(wait, deliver)
+    }
+
+    fn draw_time(&self) -> DrawTime {
+        self.queries.draw_time()
+    }
+
+    fn end(&mut self) -> Result<(), Error> {
+        self.queries.end()
+    }
+}
+
+#[test]
+fn policies_open_what_holds_the_eye_or_covers_their_share() {
+    for gpu in gpus() {
+        for (name, share) in [("hroc", 0.25), ("hroc", 0.02), ("hybrid", 0.1)] {
+            let mut policy = policy::by_name(name).expect("a policy of that name");
+            policy.set("share", &share.to_string()).expect("a dial of that name");
+            let mut eye = Culler::new(policy);
+            let queries = gpu.exact_queries(GpuConfig::default());
+            let mut watched = Watched { queries, share, groups: 0, near: 0, large: 0 };
+            let mut stage = Stage::new(worlds::random(4, 120), 4, SCREEN, true);
+            let tree = TreeConfig { bulk_leaf: 2, unasked_leaf: 2, ..TreeConfig::stable() };
+            let mut scene = Scene::new(SceneConfig { tree, ..SceneConfig::default() });
+            let mut renderer = Renderer::new(&gpu);
+            for frame in 0..24 {
+                let view = stage.next(frame);
+                scene.sync(&stage.world);
+                renderer.prepare(&stage.world, &view, stage.detail);
+                watched.queries.target(&targets(&depth_texture(&gpu, &view), false));
+                let draw = |pass: &mut _, objects: &[ObjectRef]| renderer.draw(pass, &view, objects);
+                eye.frame(&scene, &view, &mut watched, draw).expect("a frame");
+            }
+            let Watched { groups, near, large, .. } = watched;
+            println!("{:?}, {name}, {share}: {groups} groups", gpu.backend);
+            assert!(groups > 100, "{:?}, {name}, {share}: {groups} groups", gpu.backend);
+            assert_eq!((near, large), (0, 0), "{:?}, {name}, {share}: of {groups} groups", gpu.backend);
+        }
+    }
+}
