@@ -19,6 +19,7 @@ mod hierarchy;
 mod history;
 mod hroc;
 mod hybrid;
+mod in_flight;
 mod near_first;
 mod nohc;
 mod none;

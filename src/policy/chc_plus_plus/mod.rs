@@ -59,9 +59,9 @@ pub use multiquery::KeepRule;
 
 use std::ops::Range;
 
-use super::chc::IN_FLIGHT;
 use super::coherence::{Coherence, Look, Step, Terms};
 use super::front::Front;
+use super::in_flight::IN_FLIGHT;
 use super::odds::{Class, Kind, Odds};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::Dial;
