@@ -13,8 +13,9 @@
 //! node that was hidden is asked about in every frame. A leaf that was visible is drawn whatever its
 //! answer says; that only decides how the next frame begins.
 //!
-//! *Votes.* It asks whether something is visible, not how much ([`Want::Any`](crate::query::Want::Any)): its answers say
-//! nothing on the tree's shape. The tree is as fine as it is built, since somebody asks.
+//! *Votes.* It asks whether something is visible, not how much
+//! ([`Want::Any`](crate::query::Want::Any)): its answers say nothing on the tree's shape. The tree is as fine
+//! as it is built, since somebody asks.
 //!
 //! # Where we differ
 //!

@@ -114,9 +114,9 @@ use sweep::answer::Sweeps;
 
 /// The GPU backend: it draws into the app's attachments and asks about what is there.
 ///
-/// Draws of one wave are submitted together; those of the whole frame, if questions are late. So what `Queue::write_buffer` writes during a draw
-/// is there for all of these draws: data that differs between calls of the closure needs a
-/// place for each.
+/// Draws of one wave are submitted together; those of the whole frame, if questions are late. So what
+/// `Queue::write_buffer` writes during a draw is there for all of these draws: data that differs between calls
+/// of the closure needs a place for each.
 #[derive(Debug)]
 pub struct GpuQueries {
     device: Device,

@@ -24,8 +24,8 @@ pub struct GpuStats {
     pub submits: u64,
     /// What the device took for the app's draw passes, of the last frame whose timestamps had
     /// arrived when this one began: seldom the one before this. None if none have, if the device
-    /// has not [`Features::TIMESTAMP_QUERY`](wgpu::Features::TIMESTAMP_QUERY), and after a frame of more than 1024 passes, or one
-    /// that failed, until the timestamps of a later one arrive.
+    /// has not [`Features::TIMESTAMP_QUERY`](wgpu::Features::TIMESTAMP_QUERY), and after a frame of more than
+    /// 1024 passes, or one that failed, until the timestamps of a later one arrive.
     pub draw_time: Option<Duration>,
     /// The part of it that came before the last pass that answers questions: what answers had to
     /// wait for.

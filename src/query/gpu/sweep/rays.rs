@@ -4,6 +4,9 @@
 //! The paper draws a group's box, and only what passes the depth test casts a ray. Here the first
 //! node that a ray looks at is the group itself, and one that does not meet it ends there: the depth
 //! is read anyway.
+//!
+//! No ray is cast for a group that holds the eye, nor for one that covers more of the screen than its asker's
+//! share: a policy opens both before it asks, and `targets` whatever the device cannot place.
 
 use wgpu::{BindGroup, Buffer, BufferBinding, BufferUsages, Device, ShaderModule};
 
