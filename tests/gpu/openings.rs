@@ -20,7 +20,7 @@ struct Watched {
     queries: GpuQueries,
     share: f32,
     groups: usize,
-    /// Groups that hold the eye, or may; and those beyond the share.
+    /// Groups that the device cannot place; and those that hold the eye, or cover more than the share.
     near: usize,
     large: usize,
 }
@@ -29,17 +29,14 @@ impl Watched {
     fn look(&mut self, sweep: &Sweep<'_>) -> Result<(), Error> {
         let screen = sweep.view.viewport();
         let most = self.share * (screen.width * screen.height) as f32;
-        // On the device a rectangle has room for its errors, and ends at whole pixels.
-        let room = 4.0 * (screen.width + screen.height) as f32;
-        for (group, rect) in self.queries.inspect_groups(sweep)? {
+        for (group, pixels) in self.queries.inspect_groups(sweep)? {
             self.groups += 1;
-            let is_large = match project(&sweep.scene.tree().bounds(group), sweep.view) {
+            self.near += usize::from(pixels.is_none());
+            self.large += usize::from(match project(&sweep.scene.tree().bounds(group), sweep.view) {
                 Projected::Rect(rect) => rect.area() > most,
                 Projected::Near => true,
                 Projected::Outside => false,
-            };
-            self.near += usize::from(rect.is_none());
-            self.large += usize::from(is_large || rect.is_some_and(|rect| rect.area() as f32 > most + room));
+            });
         }
         Ok(())
     }

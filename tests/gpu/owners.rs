@@ -43,17 +43,23 @@ impl Targets {
     }
 
     fn set(&self, queries: &mut GpuQueries) {
-        self.set_cleared(queries, 0);
+        let (mut targets, ids) = self.targets();
+        targets.colors.push(None);
+        queries.target_ids(Some(&ids));
+        queries.target(&targets.with_color(ids, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
     }
 
     /// The same with samples that are somebody's before anything is drawn.
     fn set_cleared(&self, queries: &mut GpuQueries, id: u16) {
-        let [depth, ids] = [&self.depth, &self.ids].map(|texture| texture.create_view(&Default::default()));
-        queries.target_ids(Some(&ids));
-        let mut targets = FrameTargets::new(depth);
-        targets.colors.push(None);
+        let (targets, ids) = self.targets();
         let id = wgpu::Color { r: id.into(), ..wgpu::Color::TRANSPARENT };
+        queries.target_ids(Some(&ids));
         queries.target(&targets.with_color(ids, wgpu::LoadOp::Clear(id)));
+    }
+
+    fn targets(&self) -> (FrameTargets, wgpu::TextureView) {
+        let [depth, ids] = [&self.depth, &self.ids].map(|texture| texture.create_view(&Default::default()));
+        (FrameTargets::new(depth), ids)
     }
 }
 
@@ -238,7 +244,7 @@ fn owners_take_no_memory_for_proxies() {
         for _ in 0..3 {
             owned_by_the_last(&gpu, &mut queries, 1000);
             assert_eq!(held("tercet verdicts"), Some(1), "{:?}", gpu.backend);
-            assert_eq!(of_boxes.map(|label| held(label)), [Some(0); 4], "{:?}", gpu.backend);
+            assert_eq!(of_boxes.map(&held), [Some(0); 4], "{:?}", gpu.backend);
         }
         // Who looks at boxes has them: the account would tell.
         let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 60.0, 0.1, SCREEN).expect("a view");
@@ -249,7 +255,7 @@ fn owners_take_no_memory_for_proxies() {
         let sweep = Sweep { scene: &scene, view: &view, frustum: &frustum, groups: &[], loose: &ids, test };
         queries.sweep(Ticket(3), &sweep).expect("a sweep");
         queries.end().expect("end");
-        assert_eq!(of_boxes.map(|label| held(label)), [Some(1); 4], "{:?}", gpu.backend);
+        assert_eq!(of_boxes.map(&held), [Some(1); 4], "{:?}", gpu.backend);
     }
 }
 

@@ -345,7 +345,7 @@ fn where_the_tree_does_not_fit_rasters_answer() {
             let raster = sweep(&mut queries, &of(SweepTest::Raster));
             let rays = sweep(&mut queries, &of(SweepTest::Rays));
             assert!(raster.slots().eq(rays.slots()));
-            assert_eq!(queries.stats().groups, u64::from(fits), "{:?}, {count} objects", gpu.backend);
+            assert_eq!(queries.stats().groups > 0, fits, "{:?}, {count} objects", gpu.backend);
             queries.end().expect("end");
         }
     }
