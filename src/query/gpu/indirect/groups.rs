@@ -19,10 +19,8 @@ use super::super::counter::compiled;
 use super::super::rectangles::{Draws, Listed, Of};
 use super::super::shaders::Shaders;
 use super::super::sweep::array::DeviceArray;
-use super::super::sweep::asked::Asked;
-use super::super::sweep::enclose::{self, Enclose, Nodes};
-use super::super::sweep::flat::FlatTree;
 use super::super::sweep::mirror::Mirrored;
+use super::super::sweep::placed::PlacedTree;
 use super::super::sweep::raster::Raster;
 use super::super::sweep::rays::{self, Rays};
 use super::super::sweep::stage::Stage;
@@ -34,18 +32,14 @@ use crate::scene::Scene;
 /// The tree on the device, and what is made of it in a frame.
 #[derive(Debug)]
 pub(super) struct Groups {
-    tree: FlatTree,
+    tree: PlacedTree,
     /// Places in the order of meshes.
     places: Mirrored<u32>,
-    enclose: Enclose,
     mark: Stage,
     extract: Stage,
     spread: Stage,
     /// For targets with one sample a pixel and with several.
     looks: [Option<(Rays, Raster)>; 2],
-    nodes: Nodes,
-    /// By place.
-    objects: Asked,
     /// By mesh.
     verdicts: DeviceArray<u32>,
     marks: DeviceArray<u32>,
@@ -75,16 +69,13 @@ impl Groups {
         let spreading = [(0, false), (1, false), (2, true)];
         let mark = stage(&shaders.mark, ("tercet mark", "mark"), &marking);
         Self {
-            tree: FlatTree::new(device),
+            tree: PlacedTree::new(device, shaders),
             places: Mirrored::new(device, "tercet places by mesh"),
-            enclose: Enclose::new(device, &compiled(device, &shaders.enclose)),
             uniforms: mark.bind(device, &most, None),
             mark,
             extract: stage(&shaders.extract, ("tercet extract", "extract"), &extracting),
             spread: stage(&shaders.spread, ("tercet spread", "spread"), &spreading),
             looks: [None, None],
-            nodes: enclose::nodes(device),
-            objects: Asked::new(device),
             verdicts: DeviceArray::written(device, "tercet verdicts by mesh"),
             marks: DeviceArray::written(device, "tercet marks"),
             groups: rays::list(device),
@@ -113,19 +104,17 @@ impl Groups {
         let (place_of, places) = &mut self.scratch;
         place_of.clear();
         place_of.resize(scene.slot_bound(), 0);
-        for (place, &slot) in (0..).zip(self.tree.slots()) {
+        for (place, &slot) in (0..).zip(self.tree.flat.slots()) {
             place_of[slot as usize] = place;
         }
         places.clear();
         places.extend(order.iter().map(|&slot| place_of[slot as usize]));
         uploaded += self.places.follow(device, queue, places)?;
-        let (nodes, objects) = (self.tree.node_count() as usize, order.len());
-        self.nodes.resize(device, nodes)?;
+        let nodes = self.tree.nodes.count() as usize;
         self.marks.resize(device, nodes)?;
         self.groups.resize(device, nodes)?;
-        self.objects.resize(device, objects)?;
-        self.verdicts.resize(device, objects)?;
-        self.loose.resize(device, objects)?;
+        self.verdicts.resize(device, order.len())?;
+        self.loose.resize(device, order.len())?;
         let Viewport { width, height, .. } = view.viewport();
         let pixels = share * (width as f32 * height as f32);
         queue.write_buffer(&self.most, 0, bytes_of(&[pixels, 0.0, 0.0, 0.0]));
@@ -141,8 +130,7 @@ impl Groups {
         bound: &Bound,
         boxes: BufferBinding<'_>,
     ) {
-        self.enclose.record(tape, &bound.view, &self.tree, &self.nodes);
-        project.record(tape, &bound.view, boxes, self.tree.places(), &self.objects);
+        self.tree.place(tape, (project, bound), boxes);
         self.spread(tape);
     }
 
@@ -157,8 +145,9 @@ impl Groups {
         remembered: BufferBinding<'_>,
     ) {
         tape.encoder.clear_buffer(self.marks.buffer(), 0, Some(self.marks.bytes()));
-        let Self { nodes, marks, objects, groups, loose, uniforms, .. } = &*self;
-        let all = [(0, nodes.all()), (1, self.tree.places()), (2, remembered), (3, marks.all())];
+        let Self { tree, marks, groups, loose, uniforms, .. } = &*self;
+        let PlacedTree { flat, nodes, objects, .. } = tree;
+        let all = [(0, nodes.all()), (1, flat.places()), (2, remembered), (3, marks.all())];
         self.mark.record(tape, uniforms, &all, nodes.count());
         let draws = self.draws.as_entire_buffer_binding();
         let all = [
@@ -181,9 +170,8 @@ impl Groups {
         });
         let draws = |which: u64| Draws::Indirect(&self.draws, which * size_of_val(&DRAWS[0]) as u64);
         let viewport = view.viewport();
-        let tree = (&self.nodes, &self.objects);
-        rays.record(tape, &bound.frame, tree, (self.groups.buffer(), draws(0)), viewport);
-        raster.record(tape, &bound.frame, &self.objects, (self.loose.buffer(), draws(1)), viewport);
+        rays.record(tape, &bound.frame, &self.tree, (self.groups.buffer(), draws(0)), viewport);
+        raster.record(tape, &bound.frame, &self.tree.objects, (self.loose.buffer(), draws(1)), viewport);
         self.spread(tape);
     }
 
@@ -201,8 +189,9 @@ impl Groups {
     }
 
     fn spread(&self, tape: &mut Tape<'_>) {
-        let all = [(0, self.objects.verdicts()), (1, self.places.binding()), (2, self.verdicts())];
-        self.spread.record(tape, &self.uniforms, &all, self.objects.count());
+        let found = &self.tree.objects;
+        let all = [(0, found.verdicts()), (1, self.places.binding()), (2, self.verdicts())];
+        self.spread.record(tape, &self.uniforms, &all, found.count());
     }
 }
 

@@ -7,11 +7,11 @@ use bytemuck::cast_slice;
 use wgpu::{Buffer, Device, Queue};
 
 use super::array::DeviceArray;
-use super::asked::{self, Asked, SEEN, Verdicts};
+use super::asked::{self, SEEN, Verdicts};
 use super::boxes::PackedBox;
-use super::enclose::{self, Enclose, Nodes};
-use super::flat::FlatTree;
+use super::enclose::Nodes;
 use super::mirror::Mirrored;
+use super::placed::PlacedTree;
 use super::rays::{self, Enlist, Rays};
 use super::{Bound, Project};
 use crate::Error;
@@ -27,13 +27,9 @@ use crate::tree::NodeId;
 /// The tree on the device, with what its objects' proxies are and where its nodes lie.
 #[derive(Debug)]
 pub(super) struct Grove {
-    tree: FlatTree,
-    enclose: Enclose,
+    tree: PlacedTree,
     enlist: Enlist,
-    nodes: Nodes,
-    /// By place.
-    objects: Asked,
-    /// What was known of them before any ray.
+    /// What was known of the tree's objects before any ray.
     first: Verdicts,
     /// The same objects.
     ids: Vec<ObjectId>,
@@ -54,11 +50,8 @@ pub(super) struct Groups {
 impl Grove {
     pub(super) fn new(device: &Device, shaders: &Shaders) -> Self {
         Self {
-            tree: FlatTree::new(device),
-            enclose: Enclose::new(device, &compiled(device, &shaders.enclose)),
+            tree: PlacedTree::new(device, shaders),
             enlist: Enlist::new(device, &compiled(device, &shaders.enlist)),
-            nodes: enclose::nodes(device),
-            objects: Asked::new(device),
             first: asked::verdicts(device),
             ids: Vec::new(),
             is_ready: false,
@@ -78,7 +71,7 @@ impl Grove {
         &mut self,
         tape: &mut Tape<'_>,
         queue: &Queue,
-        (project, bound): (&Project, &Bound),
+        making: (&Project, &Bound),
         boxes: &Mirrored<PackedBox>,
         scene: &Scene,
     ) -> Result<u64, Error> {
@@ -87,16 +80,13 @@ impl Grove {
         }
         let device = tape.device;
         let uploaded = self.tree.follow(device, queue, scene, &[])?;
-        self.nodes.resize(device, self.tree.node_count() as usize)?;
-        let count = self.tree.slots().len();
-        self.objects.resize(device, count)?;
-        self.first.resize(device, count)?;
+        let slots = self.tree.flat.slots();
+        self.first.resize(device, slots.len())?;
         let store = scene.objects_store();
         self.ids.clear();
-        self.ids.extend(self.tree.slots().iter().map(|&slot| store.id(slot)));
-        self.enclose.record(tape, &bound.view, &self.tree, &self.nodes);
-        project.record(tape, &bound.view, boxes.binding(), self.tree.places(), &self.objects);
-        let verdicts = self.objects.found().buffer();
+        self.ids.extend(slots.iter().map(|&slot| store.id(slot)));
+        self.tree.place(tape, making, boxes.binding());
+        let verdicts = self.tree.objects.found().buffer();
         tape.encoder.copy_buffer_to_buffer(verdicts, 0, self.first.buffer(), 0, self.bytes());
         self.is_ready = true;
         Ok(uploaded)
@@ -113,22 +103,22 @@ impl Grove {
         viewport: Viewport,
         (to, at): (&Buffer, u64),
     ) {
-        let verdicts = self.objects.found().buffer();
+        let verdicts = self.tree.objects.found().buffer();
         tape.encoder.copy_buffer_to_buffer(self.first.buffer(), 0, verdicts, 0, self.bytes());
-        self.enlist.record(tape, &self.nodes, groups.indices.all(), &groups.listed);
+        self.enlist.record(tape, &self.tree.nodes, groups.indices.all(), &groups.listed);
         let list = (groups.listed.buffer(), Draws::Count(groups.count()));
-        rays.record(tape, &bound.frame, (&self.nodes, &self.objects), list, viewport);
+        rays.record(tape, &bound.frame, &self.tree, list, viewport);
         tape.encoder.copy_buffer_to_buffer(verdicts, 0, to, at, self.bytes());
     }
 
     /// Where nodes lie on the screen, by index.
     pub(super) fn nodes(&self) -> &Nodes {
-        &self.nodes
+        &self.tree.nodes
     }
 
     /// The bytes of all verdicts.
     pub(super) fn bytes(&self) -> u64 {
-        self.objects.found().bytes()
+        self.tree.objects.found().bytes()
     }
 
     /// Adds those objects below some groups that rays, or nothing, have found in sight.
@@ -141,7 +131,7 @@ impl Grove {
     ) {
         let Some(frustum) = &groups.frustum else { return };
         for place in groups.below.iter().cloned().flatten() {
-            let slot = self.tree.slots()[place] as usize;
+            let slot = self.tree.flat.slots()[place] as usize;
             // Rays know nothing of the frustum, and what cannot be asked about is seen anywhere.
             if verdicts.get(place) == Some(&SEEN) && frustum.intersects(&boxes.known()[slot].aabb()) {
                 found.insert(self.ids[place]);
@@ -189,7 +179,7 @@ impl Groups {
     ) -> Result<(), Error> {
         let indices: Vec<u32> = groups.iter().map(|group| group.index).collect();
         self.below.clear();
-        self.below.extend(groups.iter().map(|&group| grove.tree.below(sweep.scene.tree(), group)));
+        self.below.extend(groups.iter().map(|&group| grove.tree.flat.below(sweep.scene.tree(), group)));
         self.frustum = Some(sweep.frustum.clone());
         self.indices.resize(device, indices.len())?;
         self.listed.resize(device, indices.len())?;

@@ -18,7 +18,7 @@
 //! | `view`, `project` | a view's uniforms, and proxies from boxes |
 //! | `asked` | proxies and verdicts |
 //! | `raster` | the test of ROC: draw the proxies |
-//! | `flat`, `enclose` | the tree on the device, and where its nodes lie on the screen |
+//! | `flat`, `enclose`, `placed` | the tree on the device, and where its nodes and objects lie on the screen |
 //! | `rays` | the test of HROC: draw groups, and send rays down the tree |
 //! | `grove` | what sweeps by rays keep for a frame |
 //! | `pyramid`, `hi_z` | the test of Rákos 2010: compare with the farthest depth around |
@@ -39,6 +39,7 @@ mod inspect;
 mod looks;
 pub(super) mod mirror;
 pub(super) mod owners;
+pub(super) mod placed;
 pub(super) mod project;
 pub(super) mod pyramid;
 pub(super) mod raster;

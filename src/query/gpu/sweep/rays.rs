@@ -11,8 +11,8 @@
 use wgpu::{BindGroup, Buffer, BufferBinding, BufferUsages, Device, ShaderModule};
 
 use super::array::DeviceArray;
-use super::asked::Asked;
 use super::enclose::Nodes;
+use super::placed::PlacedTree;
 use super::stage::{Drawn, Stage};
 use crate::geom::Viewport;
 use crate::query::gpu::bind::DepthAs;
@@ -29,16 +29,16 @@ impl Rays {
         Self(Drawn::new(device, module, ("tercet rays", "cast_ray"), buffers, (Of::List, depth)))
     }
 
-    /// Records the casting of the rays of all groups in a list. `objects` are those of the tree, by
-    /// place.
+    /// Records the casting of the rays of all groups in a list.
     pub(in crate::query::gpu) fn record(
         &mut self,
         tape: &mut Tape<'_>,
         frame: &BindGroup,
-        (nodes, objects): (&Nodes, &Asked),
+        tree: &PlacedTree,
         list: (&Buffer, Draws<'_>),
         viewport: Viewport,
     ) {
+        let PlacedTree { objects, nodes, .. } = tree;
         let buffers = [(0, objects.proxies()), (2, objects.verdicts()), (3, nodes.all())];
         self.0.record(tape, frame, &buffers, list, viewport);
     }
