@@ -36,7 +36,7 @@ impl GpuQueries {
         let index = self.record_looks(sweep, None)?;
         let swept = &self.sweeps.as_ref().expect("it was recorded").sweeps[index];
         let (ids, asked) =
-            (swept.targets.ids.clone(), &swept.listed.as_ref().expect("it was recorded").asked);
+            (swept.targets.ids.clone(), &swept.looked.as_ref().expect("it was recorded").asked);
         let [proxies, verdicts] = [asked.proxies(), asked.verdicts()].map(|binding| binding.buffer.clone());
         let proxies: Vec<PackedProxy> = self.read_now(&proxies, ids.len())?;
         let verdicts: Vec<u32> = self.read_now(&verdicts, ids.len())?;

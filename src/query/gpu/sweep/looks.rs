@@ -7,7 +7,7 @@ use super::boxes::{self, PackedBox};
 use super::enclose::Nodes;
 use super::grove::{Groups, Grove};
 use super::mirror::Mirrored;
-use super::swept::{Listed, Swept, copy_verdicts};
+use super::swept::{Looked, Swept, copy_verdicts};
 use super::targets::Targets;
 use super::view::PackedView;
 use super::{Bound, Passes};
@@ -98,14 +98,14 @@ impl GpuQueries {
             swept.is_for_owners = false;
             swept.targets.list(sweep, test == Some(SweepTest::Rays), stack);
             let Targets { groups, ids } = &swept.targets;
-            let listed = swept.listed.get_or_insert_with(|| Listed::new(device));
-            listed.groups.clear();
+            let looked = swept.looked.get_or_insert_with(|| Looked::new(device));
+            looked.groups.clear();
             if !*is_uploaded {
                 boxes::collect(sweep.scene, scratch);
                 self.stats.uploaded += boxes.follow(device, queue, scratch)?;
                 *is_uploaded = true;
             }
-            listed.load(device, queue, ids)?;
+            looked.load(device, queue, ids)?;
             let viewport = frame.view.viewport();
             let mut tape = frame::tape(&mut frame.encoder, device, &mut self.clock);
             let grove = if !groups.is_empty() {
@@ -118,26 +118,26 @@ impl GpuQueries {
                 passes.rays(device, shaders, several)?;
                 let making = (&passes.project, bound);
                 self.stats.uploaded += grove.make_ready(&mut tape, queue, making, boxes, sweep.scene)?;
-                listed.groups.load(device, queue, grove, sweep, groups)?;
+                looked.groups.load(device, queue, grove, sweep, groups)?;
                 Some(grove)
             } else {
                 None
             };
-            let verdicts = listed.asked.found();
+            let verdicts = looked.asked.found();
             let more = grove.as_ref().map_or(0, |grove| grove.bytes());
             swept.read_back.claim(device, verdicts.bytes() + more);
             if let Some(grove) = grove {
                 let rays = passes.rays(device, &self.config.shaders, several)?;
                 let to = (swept.read_back.buffer(), verdicts.bytes());
-                grove.record(&mut tape, rays, bound, &listed.groups, viewport, to);
-                self.stats.groups += u64::from(listed.groups.count());
-                self.stats.swept += listed.groups.objects();
+                grove.record(&mut tape, rays, bound, &looked.groups, viewport, to);
+                self.stats.groups += u64::from(looked.groups.count());
+                self.stats.swept += looked.groups.objects();
             }
-            let slots = listed.slots.all();
-            passes.project.record(&mut tape, &bound.view, boxes.binding(), slots, &listed.asked);
+            let slots = looked.slots.all();
+            passes.project.record(&mut tape, &bound.view, boxes.binding(), slots, &looked.asked);
             if let Some(test) = test {
                 let by_pyramid = test == SweepTest::HiZ;
-                passes.record_test(&mut tape, bound, &listed.asked, viewport, by_pyramid);
+                passes.record_test(&mut tape, bound, &looked.asked, viewport, by_pyramid);
             }
             copy_verdicts(tape.encoder, verdicts, &swept.read_back);
             self.stats.sweeps += 1;

@@ -19,18 +19,18 @@ pub(super) struct Swept {
     pub(super) ticket: Option<Ticket>,
     pub(super) targets: Targets,
     /// What looks at boxes, made by the first sweep that does.
-    pub(super) listed: Option<Listed>,
+    pub(super) looked: Option<Looked>,
     /// Verdicts by slot, made by the first sweep for owners.
     pub(super) owned: Option<Verdicts>,
     /// Whether this one is for owners.
     pub(super) is_for_owners: bool,
-    /// Verdicts of the objects listed here, after them those of the tree if rays were cast; or by slot.
+    /// Verdicts of the objects looked at one by one, after them those of the tree if rays were cast; or by slot.
     pub(super) read_back: ReadBack,
 }
 
 /// The objects whose boxes are looked at, on the device.
 #[derive(Debug)]
-pub(super) struct Listed {
+pub(super) struct Looked {
     pub(super) slots: DeviceArray<u32>,
     pub(super) asked: Asked,
     /// Into which rays are cast.
@@ -42,7 +42,7 @@ impl Swept {
         Self {
             ticket: None,
             targets: Targets::default(),
-            listed: None,
+            looked: None,
             owned: None,
             is_for_owners: false,
             read_back: ReadBack::new(device, 256),
@@ -66,14 +66,14 @@ impl Swept {
                 found.insert(id);
             }
         }
-        if let (false, Some(listed), Some(looks)) = (self.is_for_owners, &self.listed, looks) {
-            let below = verdicts.get(listed.asked.found().bound()..).unwrap_or(&[]);
-            looks.found_below(&listed.groups, below, found);
+        if let (false, Some(looked), Some(looks)) = (self.is_for_owners, &self.looked, looks) {
+            let below = verdicts.get(looked.asked.found().bound()..).unwrap_or(&[]);
+            looks.found_below(&looked.groups, below, found);
         }
     }
 }
 
-impl Listed {
+impl Looked {
     pub(super) fn new(device: &Device) -> Self {
         let slots = DeviceArray::written(device, "tercet swept slots");
         Self { slots, asked: Asked::new(device), groups: Groups::new(device) }
