@@ -6,6 +6,8 @@
 
 mod drawn;
 mod open;
+#[cfg(test)]
+mod waves;
 mod why;
 #[cfg(test)]
 mod wrap;
@@ -163,6 +165,8 @@ impl<P: Policy> Culler<P> {
         let (tree, past) = (scene.tree(), self.past.as_ref());
         let cx = Context { scene, tree, view, frustum: &frustum, frame, tradeoff, costs, past };
         let mut stats = FrameStats { cuts: is_cut.into(), ..FrameStats::default() };
+        // Questions that have been waited for.
+        let mut awaited = 0;
         // What asking reports. Nothing more is asked then, and all that is open is unknown.
         let mut failure = None;
         let draw_time = queries.draw_time();
@@ -217,7 +221,11 @@ impl<P: Policy> Culler<P> {
                     stats.query += attempt(&mut failure, || queries.sweep(ticket, &sweep));
                 }
                 Action::Wait(wait) => {
-                    stats.waves += u32::from(wait == Wait::Block);
+                    if wait == Wait::Block {
+                        // A draw that answers by itself keeps nobody waiting.
+                        stats.waves += u32::from(stats.queries > awaited);
+                        awaited = stats.queries;
+                    }
                     let (policy, open, drawn) = (&mut self.policy, &mut self.open, &mut self.drawn);
                     stats.wait += attempt(&mut failure, || {
                         queries.answers(wait, |ticket, answer| {

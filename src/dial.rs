@@ -93,6 +93,11 @@ where
     if range.contains(&parsed) { Ok(parsed) } else { Err(fail()) }
 }
 
+/// Reads true or false.
+pub(crate) fn switch(key: &str, value: &str) -> Result<bool, Error> {
+    choice(key, value, &[("true", true), ("false", false)])
+}
+
 /// Reads one of a few named values.
 pub(crate) fn choice<T: Clone>(key: &str, value: &str, names: &[(&'static str, T)]) -> Result<T, Error> {
     names.iter().find(|(name, _)| *name == value.trim()).map(|(_, v)| v.clone()).ok_or_else(|| Error::Dial {

@@ -26,7 +26,8 @@ pub struct FrameStats {
     pub query_boxes: u32,
     /// Questions for which the budget had no room: what they were about was drawn.
     pub refused: u32,
-    /// Times that the policy waited for answers.
+    /// Times that answers to questions were waited for. A draw that answers by itself
+    /// ([`Action::DrawIfSeen`](crate::policy::Action::DrawIfSeen)) is no question, and keeps nobody waiting.
     pub waves: u32,
     /// Changes between drawing and asking.
     pub state_changes: u32,

@@ -211,7 +211,7 @@ impl Tradeoff {
                     frames => Latency::Late(frames),
                 }
             }
-            "swept" => self.swept = dial::number(key, value, false..=true)?,
+            "swept" => self.swept = dial::switch(key, value)?,
             "query_budget" => self.budget.queries = optional(key, value, 0..=u32::MAX)?,
             "pixel_budget" => self.budget.box_pixels = optional(key, value, 0..=u64::MAX)?,
             "ms_budget" => {

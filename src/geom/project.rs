@@ -7,7 +7,7 @@
 use glam::{DVec2, DVec4, Vec2};
 
 use super::aabb::{f32_above, f32_below};
-use super::proxy::PixelRect;
+use super::pixel_rect::PixelRect;
 use super::{Aabb, DepthDirection, DepthFormat, View};
 
 /// Half of the distance from 1 to the next f32: the relative error of one rounding.

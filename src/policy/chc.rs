@@ -13,8 +13,9 @@
 //! node that was hidden is asked about in every frame. A leaf that was visible is drawn whatever its
 //! answer says; that only decides how the next frame begins.
 //!
-//! *Votes.* It asks whether something is visible, not how much ([`Want::Any`]): its answers say
-//! nothing on the tree's shape. The tree is as fine as it is built, since somebody asks.
+//! *Votes.* It asks whether something is visible, not how much
+//! ([`Want::Any`](crate::query::Want::Any)): its answers say nothing on the tree's shape. The tree is as fine
+//! as it is built, since somebody asks.
 //!
 //! # Where we differ
 //!
@@ -22,14 +23,14 @@
 //!   questions have gone out since the last look. On a device a look is a submission.
 //! - A node at the near plane cannot be asked about: it is visible.
 //! - A threshold of visible samples ([`Tradeoff`](crate::Tradeoff)) makes questions count
-//!   ([`Want::Dual`]).
+//!   ([`Want::Dual`](crate::query::Want::Dual)).
 
-use super::coherence::{Coherence, Look, Step, Terms};
+use super::coherence::{Coherence, Look, Terms};
 use super::front::Front;
+use super::in_flight::{Asked, IN_FLIGHT, InFlight, Turn};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
-use crate::geom::{Proxy, Question};
-use crate::query::{Wait, Want};
+use crate::geom::Question;
 use crate::tree::NodeId;
 use crate::{Counter, Error};
 
@@ -41,24 +42,9 @@ pub struct Chc {
     /// Questions that go out before answers are looked for; 0 counts as 1.
     pub in_flight: u32,
     coherence: Coherence,
-    /// What was asked in this frame; a ticket is an index.
-    asked: Vec<Asked>,
-    /// Questions without an answer, and those asked since answers were last looked for.
-    open: u32,
-    unseen: u32,
+    /// Nothing need be noted of them.
+    questions: InFlight<()>,
 }
-
-#[derive(Clone, Copy, Debug)]
-struct Asked {
-    front: Front,
-    proxy: Proxy,
-    /// Whether it was visible in the last frame: then it is drawn already.
-    was_visible: bool,
-    answered: bool,
-}
-
-/// Questions on their way before answers are looked for, by default.
-pub(super) const IN_FLIGHT: u32 = 8;
 
 impl Default for Chc {
     fn default() -> Self {
@@ -66,9 +52,7 @@ impl Default for Chc {
             n_av: 10,
             in_flight: IN_FLIGHT,
             coherence: Coherence::default(),
-            asked: Vec::new(),
-            open: 0,
-            unseen: 0,
+            questions: InFlight::default(),
         }
     }
 }
@@ -84,44 +68,22 @@ impl Policy for Chc {
 
     fn begin(&mut self, cx: &Context<'_>) {
         self.coherence.begin(cx);
-        self.asked.clear();
-        (self.open, self.unseen) = (0, 0);
+        self.questions.begin();
     }
 
     fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
         loop {
-            match self.coherence.step() {
-                Some(Step::Draw(node, extent)) => return Action::Draw(node, extent),
-                Some(Step::Ask(i)) => {
-                    let boxes = std::slice::from_ref(&self.asked[i].proxy);
-                    let want = if cx.tradeoff.visible_pixels == 0 { Want::Any } else { Want::Dual };
-                    return Action::Ask { ticket: Ticket(i as u32), boxes, want };
-                }
-                None => {}
-            }
-            if self.unseen >= self.in_flight.max(1) && !self.coherence.is_at_end() {
-                self.unseen = 0;
-                return Action::Wait(Wait::Poll);
-            }
-            if let Some(front) = self.coherence.pop() {
-                self.look_at(cx, front);
-            } else if self.open > 0 {
-                self.unseen = 0;
-                return Action::Wait(Wait::Block);
-            } else {
-                self.coherence.pull_up(cx, |_| {});
-                return Action::Done;
+            match self.questions.turn(cx, &mut self.coherence, self.in_flight) {
+                Turn::Look(front) => self.look_at(cx, front),
+                Turn::Step(step) => return self.questions.action(cx, step),
+                Turn::Wait(wait) => return Action::Wait(wait),
+                Turn::Done => return Action::Done,
             }
         }
     }
 
     fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
-        let Some(asked) = self.asked.get_mut(ticket.0 as usize) else { return };
-        let Asked { front, was_visible, .. } = *asked;
-        if std::mem::replace(&mut asked.answered, true) {
-            return;
-        }
-        self.open -= 1;
+        let Some(Asked { front, was_visible, .. }) = self.questions.close(ticket) else { return };
         if !answer.is_visible(cx.tradeoff.visible_pixels) {
             self.coherence.found_hidden(cx, front.node);
             return;
@@ -175,9 +137,7 @@ impl Chc {
                 self.coherence.take_as_visible(cx, front);
             }
             Question::Ask(proxy) => {
-                self.coherence.ask(self.asked.len());
-                self.asked.push(Asked { front, proxy, was_visible, answered: false });
-                (self.open, self.unseen) = (self.open + 1, self.unseen + 1);
+                self.questions.ask(&mut self.coherence, (front, proxy), was_visible, ());
                 if was_visible {
                     self.coherence.take_as_visible(cx, front);
                 }

@@ -81,7 +81,7 @@ impl Policy for FrustumOnly {
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
         match key {
-            "near_first" => self.near_first = dial::choice(key, value, &[("true", true), ("false", false)])?,
+            "near_first" => self.near_first = dial::switch(key, value)?,
             _ => return Err(dial::unknown(key, value, &self.dials())),
         }
         Ok(())

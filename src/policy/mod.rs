@@ -19,6 +19,7 @@ mod hierarchy;
 mod history;
 mod hroc;
 mod hybrid;
+mod in_flight;
 mod near_first;
 mod nohc;
 mod none;
@@ -364,4 +365,28 @@ pub fn by_name(name: &str) -> Result<Box<dyn Policy>, Error> {
         "exact" => Box::new(Recorded::new(Recording::ExactSet)),
         _ => return Err(Error::UnknownPolicy { name: name.to_owned(), known: NAMES.join(", ") }),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dial::DialKind;
+
+    #[test]
+    fn all_switches_are_set_in_one_way() {
+        let mut switches = 0;
+        for name in NAMES {
+            let mut policy = by_name(name).expect("a policy of that name");
+            for Dial { key, value, .. } in policy.dials().into_iter().filter(|it| it.kind == DialKind::Switch)
+            {
+                switches += 1;
+                let other = if value == "true" { "false" } else { "true" };
+                policy.set(key, &format!(" {other} ")).expect("a value that it takes");
+                assert!(policy.dials().iter().any(|dial| dial.key == key && dial.value == other), "{name}");
+                let error = policy.set(key, "on").expect_err("no value that it takes").to_string();
+                assert_eq!(error, format!("cannot set {key}=on: it takes one of: true, false"), "{name}");
+            }
+        }
+        assert!(switches > 12, "{switches}");
+    }
 }

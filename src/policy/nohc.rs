@@ -42,14 +42,13 @@
 //!   [`Gated`](super::Gated)'s part.
 //! - Answers are looked for after `in_flight` questions, as in our CHC.
 
-use super::chc::IN_FLIGHT;
-use super::coherence::{Coherence, Look, Step, Terms};
+use super::coherence::{Coherence, Look, Terms};
 use super::front::Front;
+use super::in_flight::{Asked, IN_FLIGHT, InFlight, Turn};
 use super::odds::{self, Class, Odds};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::{self, Dial};
 use crate::geom::{Proxy, Question};
-use crate::query::{Wait, Want};
 use crate::{Counter, Error};
 
 /// See the module's documentation.
@@ -63,25 +62,17 @@ pub struct Nohc {
     odds: Odds,
     /// Pixels of a question's rectangle, the mean of those asked lately.
     mean_area: f32,
-    /// What was asked in this frame; a ticket is an index.
-    asked: Vec<Asked>,
-    /// Questions without an answer, and those asked since answers were last looked for.
-    open: u32,
-    unseen: u32,
+    questions: InFlight<Expected>,
     /// Nodes that went unasked in this frame because a question did not pay.
     not_worth: u32,
 }
 
+/// What an answer tells something about.
 #[derive(Clone, Copy, Debug)]
-struct Asked {
-    front: Front,
-    proxy: Proxy,
+struct Expected {
     class: Class,
     /// Frames since it was asked about before.
     ago: u32,
-    /// Whether it was visible in the last frame: then it is drawn already.
-    was_visible: bool,
-    answered: bool,
 }
 
 impl Default for Nohc {
@@ -92,9 +83,7 @@ impl Default for Nohc {
             coherence: Coherence::default(),
             odds: Odds::default(),
             mean_area: 0.0,
-            asked: Vec::new(),
-            open: 0,
-            unseen: 0,
+            questions: InFlight::default(),
             not_worth: 0,
         }
     }
@@ -112,44 +101,24 @@ impl Policy for Nohc {
     fn begin(&mut self, cx: &Context<'_>) {
         self.coherence.begin(cx);
         self.odds.begin();
-        self.asked.clear();
-        (self.open, self.unseen, self.not_worth) = (0, 0, 0);
+        self.questions.begin();
+        self.not_worth = 0;
     }
 
     fn next(&mut self, cx: &Context<'_>) -> Action<'_> {
         loop {
-            match self.coherence.step() {
-                Some(Step::Draw(node, extent)) => return Action::Draw(node, extent),
-                Some(Step::Ask(i)) => {
-                    let boxes = std::slice::from_ref(&self.asked[i].proxy);
-                    let want = if cx.tradeoff.visible_pixels == 0 { Want::Any } else { Want::Dual };
-                    return Action::Ask { ticket: Ticket(i as u32), boxes, want };
-                }
-                None => {}
-            }
-            if self.unseen >= self.in_flight.max(1) && !self.coherence.is_at_end() {
-                self.unseen = 0;
-                return Action::Wait(Wait::Poll);
-            }
-            if let Some(front) = self.coherence.pop() {
-                self.look_at(cx, front);
-            } else if self.open > 0 {
-                self.unseen = 0;
-                return Action::Wait(Wait::Block);
-            } else {
-                self.coherence.pull_up(cx, |_| {});
-                return Action::Done;
+            match self.questions.turn(cx, &mut self.coherence, self.in_flight) {
+                Turn::Look(front) => self.look_at(cx, front),
+                Turn::Step(step) => return self.questions.action(cx, step),
+                Turn::Wait(wait) => return Action::Wait(wait),
+                Turn::Done => return Action::Done,
             }
         }
     }
 
     fn answer(&mut self, cx: &Context<'_>, ticket: Ticket, answer: Answer<'_>) {
-        let Some(asked) = self.asked.get_mut(ticket.0 as usize) else { return };
-        let Asked { front, class, ago, was_visible, .. } = *asked;
-        if std::mem::replace(&mut asked.answered, true) {
-            return;
-        }
-        self.open -= 1;
+        let Some(Asked { front, was_visible, note, .. }) = self.questions.close(ticket) else { return };
+        let Expected { class, ago } = note;
         let visible = answer.is_visible(cx.tradeoff.visible_pixels);
         if !matches!(answer, Answer::Unknown) {
             self.odds.saw(class, ago, !visible);
@@ -211,7 +180,9 @@ impl Nohc {
                 let (kind, ago) = self.coherence.memory(cx, front.node);
                 let class = Class::new(cx, kind, std::slice::from_ref(&proxy));
                 if self.pays(cx, front, &proxy, self.odds.hidden(class, ago)) {
-                    self.ask(Asked { front, proxy, class, ago, was_visible, answered: false });
+                    self.note_area(&proxy);
+                    let note = Expected { class, ago };
+                    self.questions.ask(&mut self.coherence, (front, proxy), was_visible, note);
                     if !was_visible {
                         return;
                     }
@@ -238,13 +209,10 @@ impl Nohc {
         hidden * not_knowing > question * (0.5 + 0.5 * area.min(4.0))
     }
 
-    fn ask(&mut self, asked: Asked) {
+    fn note_area(&mut self, proxy: &Proxy) {
         const WEIGHT: f32 = 1.0 / 64.0;
-        let area = odds::area(&asked.proxy);
+        let area = odds::area(proxy);
         let before = if self.mean_area > 0.0 { self.mean_area } else { area };
         self.mean_area = before + WEIGHT * (area - before);
-        self.coherence.ask(self.asked.len());
-        self.asked.push(asked);
-        (self.open, self.unseen) = (self.open + 1, self.unseen + 1);
     }
 }

@@ -22,13 +22,14 @@
 //! What hides nothing is no part of V: it is asked about in every frame.
 
 mod counts;
+mod dials;
 
 use counts::Counts;
 
 use super::near_first::near_first;
 use super::plan::{First, Plan, Targets};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
-use crate::dial::{self, Dial};
+use crate::dial::Dial;
 use crate::query::compact::Compaction;
 use crate::query::{SweepTest, Wait};
 use crate::scene::{ObjectId, ObjectSet};
@@ -323,38 +324,11 @@ impl<P: Plan> Policy for TwoPhase<P> {
     }
 
     fn dials(&self) -> Vec<Dial> {
-        let mut dials = vec![
-            Dial::new(
-                "occluder_filtering",
-                self.occluder_filtering,
-                "draw first only what owned a sample in the last frame",
-            ),
-            Dial::new(
-                "by_geometry",
-                self.by_geometry,
-                "draw only what shows by its geometry, where that can be told",
-            ),
-            Dial::new("near_first", self.near_first, "draw what was visible from near to far, not by slot"),
-            Dial::new("parts", self.parts, "parts in which many new objects are drawn, at most"),
-        ];
-        dials.extend(self.plan.dials());
-        dials
+        dials::of(self)
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
-        match key {
-            "occluder_filtering" => {
-                self.occluder_filtering = dial::choice(key, value, &[("true", true), ("false", false)])?;
-            }
-            "by_geometry" => {
-                self.by_geometry = dial::choice(key, value, &[("true", true), ("false", false)])?
-            }
-            "near_first" => self.near_first = dial::choice(key, value, &[("true", true), ("false", false)])?,
-            "parts" => self.parts = dial::number(key, value, 1..=64)?,
-            _ if self.plan.set(key, value)? => {}
-            _ => return Err(dial::unknown(key, value, &self.dials())),
-        }
-        Ok(())
+        dials::set(self, key, value)
     }
 }
 

@@ -185,7 +185,7 @@ impl TreeConfig {
             "bulk_leaf" => self.bulk_leaf = dial::number(key, value, 1..=1 << 20)?,
             "unasked_leaf" => self.unasked_leaf = dial::number(key, value, 1..=1 << 20)?,
             "cooldown" => self.cooldown = dial::number(key, value, 0..=u32::MAX)?,
-            "merge_below_split" => self.merge_below_split = dial::number(key, value, false..=true)?,
+            "merge_below_split" => self.merge_below_split = dial::switch(key, value)?,
             "budget" => self.budget = dial::number(key, value, 0..=u32::MAX)?,
             "idle_frames" => self.idle_frames = dial::number(key, value, 1..=u32::MAX)?,
             _ => return Err(dial::unknown(key, value, &self.dials())),

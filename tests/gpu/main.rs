@@ -10,6 +10,7 @@ mod indirect_renderer;
 mod late;
 mod lifecycle;
 mod mutations;
+mod openings;
 mod owners;
 mod parallel;
 #[path = "../support/proxies.rs"]

@@ -1,17 +1,18 @@
 //! Who owns a sample, by the item buffer that the reference renderer draws, against frames of each
 //! object alone: it owns a sample, or shares one, where its own depth is that of the whole frame.
 
+use glam::Vec3;
 use tercet::Culler;
 use tercet::draw::{self, Shading};
-use tercet::geom::{Frustum, View, Viewport};
+use tercet::geom::{Aabb, Frustum, View, Viewport};
 use tercet::policy::{self, Policy};
 use tercet::query::gpu::{FrameTargets, GpuQueries};
 use tercet::query::{Answer, QueryBackend, Sweep, SweepTest, Ticket, Wait};
-use tercet::scene::{ObjectId, ObjectRef, ObjectSet, Scene, SceneConfig};
+use tercet::scene::{ObjectId, ObjectRef, ObjectSet, Scene, SceneConfig, Traits};
 use tercet::worlds;
 
 use crate::stage::Stage;
-use crate::support::{Gpu, depth_texture, gpus, read_depth, texture};
+use crate::support::{Gpu, depth_texture, gpus, gpus_with, read_depth, texture};
 
 const SCREEN: Viewport = Viewport::new(97, 55);
 const FRAMES: u32 = 2;
@@ -42,11 +43,23 @@ impl Targets {
     }
 
     fn set(&self, queries: &mut GpuQueries) {
-        let [depth, ids] = [&self.depth, &self.ids].map(|texture| texture.create_view(&Default::default()));
-        queries.target_ids(Some(&ids));
-        let mut targets = FrameTargets::new(depth);
+        let (mut targets, ids) = self.targets();
         targets.colors.push(None);
+        queries.target_ids(Some(&ids));
         queries.target(&targets.with_color(ids, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
+    }
+
+    /// The same with samples that are somebody's before anything is drawn.
+    fn set_cleared(&self, queries: &mut GpuQueries, id: u16) {
+        let (targets, ids) = self.targets();
+        let id = wgpu::Color { r: id.into(), ..wgpu::Color::TRANSPARENT };
+        queries.target_ids(Some(&ids));
+        queries.target(&targets.with_color(ids, wgpu::LoadOp::Clear(id)));
+    }
+
+    fn targets(&self) -> (FrameTargets, wgpu::TextureView) {
+        let [depth, ids] = [&self.depth, &self.ids].map(|texture| texture.create_view(&Default::default()));
+        (FrameTargets::new(depth), ids)
     }
 }
 
@@ -157,6 +170,92 @@ fn item_buffers_are_checked() {
         let deliver = |_, answer: Answer<'_>| answers += usize::from(matches!(answer, Answer::Unknown));
         queries.answers(Wait::Block, deliver).expect("answers");
         assert_eq!(answers, 1);
+    }
+}
+
+/// A scene of so many boxes, and all of them.
+fn many(count: usize) -> (Scene, Vec<ObjectId>) {
+    let mut scene = Scene::new(SceneConfig::default());
+    let place = |i: usize| Vec3::new((i % 100) as f32, (i / 100) as f32, -5.0);
+    let mut insert = |i| scene.insert(Aabb::from_center(place(i), Vec3::splat(0.4)), Traits::default());
+    let ids = (0..count).map(&mut insert).collect();
+    scene.update();
+    (scene, ids)
+}
+
+/// The answer about all objects where every sample is the last one's.
+fn owned_by_the_last(gpu: &Gpu, queries: &mut GpuQueries, count: usize) -> Option<Vec<ObjectId>> {
+    let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 60.0, 0.1, SCREEN).expect("a view");
+    let (scene, ids) = many(count);
+    Targets::new(gpu, &view).set_cleared(queries, u16::try_from(count).expect("few"));
+    queries.begin(&view).expect("begin");
+    let (frustum, test) = (Frustum::new(&view), SweepTest::Owners);
+    let sweep = Sweep { scene: &scene, view: &view, frustum: &frustum, groups: &[], loose: &ids, test };
+    queries.sweep(Ticket(3), &sweep).expect("a sweep");
+    let mut answer = None;
+    let deliver = |_, found: Answer<'_>| {
+        answer = Some(match found {
+            Answer::Swept(found) => Some(ids.iter().copied().filter(|&id| found.contains(id)).collect()),
+            _ => None,
+        });
+    };
+    queries.answers(Wait::Block, deliver).expect("answers");
+    queries.end().expect("end");
+    let last = ids[count - 1];
+    let answer: Option<Vec<ObjectId>> = answer.expect("an answer");
+    assert!(answer.as_ref().is_none_or(|found| found == &[last]), "{answer:?}");
+    answer
+}
+
+/// The device's limit is one of verdicts, a word each, and not of proxies, which nobody makes. Beyond it
+/// the answer is unknown, and an error says which limit it was.
+#[test]
+fn as_many_owners_are_found_as_there_is_room_for_verdicts() {
+    const WORDS: usize = 1 << 14;
+    let limits =
+        wgpu::Limits { max_storage_buffer_binding_size: 4 * WORDS as u64, ..wgpu::Limits::default() };
+    for gpu in gpus_with(limits) {
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
+        assert!(owned_by_the_last(&gpu, &mut queries, WORDS).is_some(), "{:?}", gpu.backend);
+        assert!(queries.refusal().is_none());
+        assert!(owned_by_the_last(&gpu, &mut queries, WORDS + 1).is_none(), "{:?}", gpu.backend);
+        let refusal = queries.refusal().map(ToString::to_string).unwrap_or_default();
+        let limit = format!("max_storage_buffer_binding_size = {}", 4 * WORDS);
+        assert!(matches!(queries.refusal(), Some(tercet::Error::Device { .. })), "{refusal}");
+        assert!(refusal.contains(&limit) && refusal.contains(&(WORDS + 1).to_string()), "{refusal}");
+        assert!(owned_by_the_last(&gpu, &mut queries, 2).is_some(), "the next frame works");
+        assert!(queries.refusal().is_none());
+    }
+}
+
+/// A sweep for owners has verdicts, and nothing that looks at boxes needs: no proxies, no boxes, no slots.
+#[test]
+fn owners_take_no_memory_for_proxies() {
+    for gpu in gpus() {
+        let held = |label: &str| {
+            let report = gpu.device.generate_allocator_report()?;
+            Some(report.allocations.iter().filter(|allocation| allocation.name == label).count())
+        };
+        if held("").is_none() {
+            continue; // OpenGL keeps no account; what is allocated there is the same.
+        }
+        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
+        let of_boxes = ["tercet swept proxies", "tercet swept slots", "tercet boxes", "tercet view"];
+        for _ in 0..3 {
+            owned_by_the_last(&gpu, &mut queries, 1000);
+            assert_eq!(held("tercet verdicts"), Some(1), "{:?}", gpu.backend);
+            assert_eq!(of_boxes.map(&held), [Some(0); 4], "{:?}", gpu.backend);
+        }
+        // Who looks at boxes has them: the account would tell.
+        let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 60.0, 0.1, SCREEN).expect("a view");
+        let (scene, ids) = many(10);
+        Targets::new(&gpu, &view).set(&mut queries);
+        queries.begin(&view).expect("begin");
+        let (frustum, test) = (Frustum::new(&view), SweepTest::Raster);
+        let sweep = Sweep { scene: &scene, view: &view, frustum: &frustum, groups: &[], loose: &ids, test };
+        queries.sweep(Ticket(3), &sweep).expect("a sweep");
+        queries.end().expect("end");
+        assert_eq!(of_boxes.map(&held), [Some(1); 4], "{:?}", gpu.backend);
     }
 }
 

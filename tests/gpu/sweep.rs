@@ -31,8 +31,9 @@ pub struct Tally {
     fewer: usize,
     /// Objects that only the device's proxy shows.
     pub more: usize,
-    /// Groups that rays were cast into.
+    /// Groups that rays were cast into, and those of them that stand for a larger one, which was opened.
     groups: u64,
+    opened: usize,
     /// What was found in and beside them, and what was not.
     by_rays: [usize; 2],
     /// What is outside the bounds, a stage: proxies, pyramid, raster, Hi-Z, rays.
@@ -145,6 +146,10 @@ impl<'g> Twin<'g> {
             let raster = sweep(&mut self.queries, &of(SweepTest::Raster));
             let rays = sweep(&mut self.queries, &of(SweepTest::Rays));
             self.tally.faults[4] += usize::from(!raster.slots().eq(rays.slots()));
+            let cast = self.queries.inspect_groups(&of(SweepTest::Rays)).expect("groups");
+            // Those of the whole screen are opened.
+            self.tally.faults[4] += cast.iter().filter(|(_, pixels)| pixels.is_none()).count();
+            self.tally.opened += cast.iter().filter(|(group, _)| !groups.contains(group)).count();
             let [found, others] = &mut self.tally.by_rays;
             (*found, *others) = (*found + rays.len(), *others + boxes.ids.len() - rays.len());
         }
@@ -303,7 +308,10 @@ fn stages_equal_their_twins() {
             assert!(tally.samples > 2500 && tally.seen.min(tally.hidden) > 100, "{tally:?}");
             assert!(tally.fewer == 0 && tally.more * 4 < tally.hidden, "{tally:?}");
             assert!(tally.loose * 2 < tally.hidden, "{tally:?}");
-            assert!(tally.groups > 40 && tally.by_rays.iter().all(|&count| count > 200), "{tally:?}");
+            assert!(
+                tally.groups.min(tally.opened as u64) > 40 && tally.by_rays.iter().all(|&count| count > 200),
+                "{tally:?}"
+            );
         }
     }
 }
@@ -337,7 +345,7 @@ fn where_the_tree_does_not_fit_rasters_answer() {
             let raster = sweep(&mut queries, &of(SweepTest::Raster));
             let rays = sweep(&mut queries, &of(SweepTest::Rays));
             assert!(raster.slots().eq(rays.slots()));
-            assert_eq!(queries.stats().groups, u64::from(fits), "{:?}, {count} objects", gpu.backend);
+            assert_eq!(queries.stats().groups > 0, fits, "{:?}, {count} objects", gpu.backend);
             queries.end().expect("end");
         }
     }

@@ -271,7 +271,7 @@ impl Policy for Auto {
     fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
         match key {
             "race" => {
-                self.race = dial::number(key, value, false..=true)?;
+                self.race = dial::switch(key, value)?;
                 if !self.race {
                     (self.running, self.contest) = (HROC, Race::new(KEYS.len()));
                 }

@@ -10,7 +10,7 @@
 //! | questions are about the boxes of descendants | `tight` | `tight` |
 //! | several hidden nodes are asked about in one question | `multiqueries` | `multiquery` |
 //! | a large multiquery that fails is repeated in groups (ours) | `regroup` | `multiquery` |
-//! | inner nodes that come into view are opened, and leaves drawn, unasked if they are seldom hidden (ours) | `guess` | `mod` |
+//! | inner nodes that come into view are opened, and leaves drawn, unasked if they are seldom hidden (ours) | `guess` | `guess` |
 //!
 //! With all of them off it does as CHC does, but that it asks about a visible leaf every `n_av`
 //! frames, and CHC in the frame after `n_av` (both as published). So the published ablation (CHC,
@@ -29,12 +29,7 @@
 //!   one submission on a device. The paper issues leaf by leaf whenever an answer has not arrived yet,
 //!   and leaves the last answers to the next frame. Here they are awaited: a frame's questions end
 //!   with it.
-//! - *Guesses.* After a quick turn nothing is remembered of what has come into view. The published rule
-//!   asks about every node on the way down, and most inner ones are visible. Here such a node is opened
-//!   unasked if it is hidden with a probability `p`, by the measure of those of its coverage of the
-//!   screen, so low that asking about its `c` children costs less than asking about it first: `p c < 1`.
-//!   A leaf is drawn unasked where `p` is below 0.35, and asked about one to three frames later. No answer
-//!   hides them, so nothing can be lost.
+//! - *Guesses.* What comes into view is taken as visible where asking is not expected to pay; see [`guess`].
 //! - *Groups.* Nodes of a failed multiquery are asked about one by one as published; of more than four,
 //!   in about √|M| groups first. So larger sets are worth a question, and `C` is that of the two steps.
 //! - `p_keep` is measured for nodes that are alike: leaves or not, of about the same coverage of the screen,
@@ -53,6 +48,7 @@
 //!   threshold decides about single nodes.
 
 mod dials;
+mod guess;
 mod multiquery;
 mod queues;
 mod sampling;
@@ -63,9 +59,9 @@ pub use multiquery::KeepRule;
 
 use std::ops::Range;
 
-use super::chc::IN_FLIGHT;
 use super::coherence::{Coherence, Look, Step, Terms};
 use super::front::Front;
+use super::in_flight::IN_FLIGHT;
 use super::odds::{Class, Kind, Odds};
 use super::{Action, Answer, Context, Fate, Policy, Ticket};
 use crate::dial::Dial;
@@ -78,9 +74,6 @@ use queues::{Queues, Waiting};
 use sampling::Sampling;
 use spells::Spells;
 use tight::{Limits, TightVolume};
-
-/// Leaves that are hidden with a lesser probability are drawn unasked when they come into view.
-const SELDOM: f32 = 0.35;
 
 /// See the module's documentation.
 #[derive(Clone, Debug)]
@@ -308,7 +301,7 @@ impl ChcPlusPlus {
             let (hidden_for, was_visible) = self.spells.frames(front.node, cx.frame);
             let alike = Alike { class, was_visible };
             let hidden = self.odds.hidden(class, 1);
-            if self.guess && hidden_for == 0 && self.is_guessed_visible(cx, front.node, class, hidden) {
+            if self.guess && hidden_for == 0 && guess::is_visible(cx, front.node, class, hidden) {
                 self.counts.guessed += 1;
                 if class.is_leaf {
                     self.coherence.assume_visible(
@@ -329,16 +322,6 @@ impl ChcPlusPlus {
                 self.issue_batch();
             }
         }
-    }
-
-    /// Whether a node of which nothing is known is taken as visible, `hidden` being the probability that
-    /// it is not: an inner one if it is cheaper to ask about its children than about it first.
-    fn is_guessed_visible(&self, cx: &Context<'_>, node: NodeId, class: Class, hidden: f32) -> bool {
-        if class.is_leaf {
-            return hidden < SELDOM;
-        }
-        let children = cx.tree.children(node).into_iter().flatten();
-        hidden * (children.filter(|&child| cx.tree.count(child) > 0).count() as f32) < 1.0
     }
 
     /// The proxies of a node's boxes.

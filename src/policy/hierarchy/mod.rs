@@ -225,7 +225,7 @@ impl Policy for Hierarchy {
             return Err(dial::unknown(key, value, &self.dials()));
         }
         match key {
-            "whole" => self.whole = dial::number(key, value, false..=true)?,
+            "whole" => self.whole = dial::switch(key, value)?,
             "p_vp" => self.p_vp = dial::number(key, value, 0.0..=1.0)?,
             "p_skip" => self.p_skip = dial::number(key, value, 0.0..=1.0)?,
             _ => self.seed = dial::number(key, value, 0..=u64::MAX)?,

@@ -10,7 +10,8 @@
 //! - A leaf holds several objects: the others of an occluder's leaf, and what inner nodes hold
 //!   themselves, are tested one by one.
 //! - A group whose box holds the eye, or covers more than a share of the screen (`share`), is opened
-//!   before rays are cast: rays over the whole screen are what the paper names as its weakness.
+//!   before rays are cast, on every backend: rays over the whole screen are what the paper names as its
+//!   weakness.
 //! - The occluders are those of V that pass the depth test while they are drawn (*O*), where the backend
 //!   tells which these are (`by_geometry`). Elsewhere they are all of V in the frustum; without occluder
 //!   filtering their boxes are swept, to find out which are still visible.

@@ -34,6 +34,7 @@
 //!
 //! | file | |
 //! |---|---|
+//! | `config`, `stats` | dials, and what is counted |
 //! | `targets` | what the app draws into, and the passes on it |
 //! | `questions`, `pack` | what was asked, as the shaders read it |
 //! | `counter`, `bind` | the ways of counting, behind one door |
@@ -64,6 +65,7 @@ mod ask_natively;
 mod batch;
 mod bind;
 mod clock;
+mod config;
 mod count_fragments;
 mod count_workgroups;
 mod counter;
@@ -77,10 +79,9 @@ mod questions;
 mod read_back;
 mod rectangles;
 mod shaders;
+mod stats;
 mod sweep;
 mod targets;
-
-use std::time::Duration;
 
 use wgpu::{
     Adapter, Backend, Buffer, BufferDescriptor, BufferUsages, Device, Features, Queue, RenderPass,
@@ -90,9 +91,11 @@ use wgpu::{
 /// The wgpu that this backend speaks.
 pub use wgpu;
 
+pub use config::{AnyBy, GpuConfig};
 pub use counter::Counting;
 pub use indirect::{BatchMesh, IndirectBatch, IndirectConfig, IndirectCuller, IndirectStats};
 pub use shaders::{Shader, Shaders};
+pub use stats::GpuStats;
 pub use sweep::Level;
 pub use targets::{ColorTarget, DepthTarget, FrameTargets};
 
@@ -109,85 +112,11 @@ use pack::{EMULATED_RANGE, PackedFrame};
 use questions::Questions;
 use sweep::answer::Sweeps;
 
-/// Who answers [`Want::Any`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum AnyBy {
-    /// The shaders that count, which stop at the first visible sample where they can.
-    #[default]
-    Counts,
-    /// Native occlusion queries, one a question. They find visible whatever counting does, and
-    /// hardly more: with a depth of 24 bits, what lies two units behind what is stored.
-    Native,
-}
-
-/// The dials of [`GpuQueries`].
-#[derive(Clone, Debug)]
-pub struct GpuConfig {
-    /// Who answers [`Want::Any`]; [`Want::Dual`] is always counted.
-    pub any: AnyBy,
-    /// How samples are counted; None for the best that the device supports: questions about many
-    /// pixels by [`Counting::Blocks`], about few by the first of [`Counting::Subgroups`],
-    /// [`Counting::Workgroups`] and [`Counting::Fragments`] that it can do.
-    pub counting: Option<Counting>,
-    /// The longest that [`Wait::Block`] waits.
-    pub timeout: Duration,
-    /// How much nearer than exact geometry may be stored beyond what `geom/proxy.rs` allows for;
-    /// None for what the device's API is known to need: nothing but on OpenGL, which emulates the
-    /// depth range.
-    pub depth_slack: Option<f32>,
-    /// The sources of the passes.
-    pub shaders: Shaders,
-}
-
-impl Default for GpuConfig {
-    fn default() -> Self {
-        Self {
-            any: AnyBy::default(),
-            counting: None,
-            timeout: Duration::from_secs(10),
-            depth_slack: None,
-            shaders: Shaders::default(),
-        }
-    }
-}
-
-/// Counters since [`QueryBackend::begin`], and times of an earlier frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GpuStats {
-    /// Passes opened for the app's draws.
-    pub draw_passes: u64,
-    /// Passes that count.
-    pub question_passes: u64,
-    /// Boxes asked about.
-    pub boxes: u64,
-    /// Sweeps.
-    pub sweeps: u64,
-    /// Objects that they looked at.
-    pub swept: u64,
-    /// Groups among them into which rays were cast.
-    pub groups: u64,
-    /// Bytes of boxes, and for rays of the tree, that were uploaded for them: of what has changed since
-    /// the last sweep.
-    pub uploaded: u64,
-    /// Submissions to the queue.
-    pub submits: u64,
-    /// What the device took for the app's draw passes, of the last frame whose timestamps had
-    /// arrived when this one began: seldom the one before this. None if none have, if the device
-    /// has not [`Features::TIMESTAMP_QUERY`], and after a frame of more than 1024 passes, or one
-    /// that failed, until the timestamps of a later one arrive.
-    pub draw_time: Option<Duration>,
-    /// The part of it that came before the last pass that answers questions: what answers had to
-    /// wait for.
-    pub awaited_draw_time: Option<Duration>,
-    /// The same for the passes that answer questions.
-    pub question_time: Option<Duration>,
-}
-
 /// The GPU backend: it draws into the app's attachments and asks about what is there.
 ///
-/// Draws of one wave are submitted together; those of the whole frame, if questions are late. So what `Queue::write_buffer` writes during a draw
-/// is there for all of these draws: data that differs between calls of the closure needs a
-/// place for each.
+/// Draws of one wave are submitted together; those of the whole frame, if questions are late. So what
+/// `Queue::write_buffer` writes during a draw is there for all of these draws: data that differs between calls
+/// of the closure needs a place for each.
 #[derive(Debug)]
 pub struct GpuQueries {
     device: Device,
@@ -317,6 +246,7 @@ impl GpuQueries {
     /// Forgets the last frame.
     fn restart(&mut self) {
         self.forget();
+        self.sweeps.iter_mut().for_each(Sweeps::restart);
         self.frame = None;
         self.stats = GpuStats::default();
     }

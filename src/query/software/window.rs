@@ -7,8 +7,11 @@ use super::layout::{LANE_X, LANE_Y, TILE, TILE_BITS};
 use super::simd::prefetch;
 use crate::geom::{PixelRect, Proxy};
 
-/// The most tiles a side of a window: it meets at most two blocks a side.
-const SIDE: u32 = 4;
+/// Tiles along each side of a block.
+const BLOCK_TILES: u32 = 1 << TILE_BITS;
+
+/// The most tiles along each side of a window. No more than a block has: it meets two blocks at most.
+const MOST_TILES: u32 = BLOCK_TILES;
 
 /// Proxies of upright boxes in an upright view mostly have no more edges that cut them, and no more planes.
 pub(crate) const FEW: usize = 2;
@@ -38,19 +41,21 @@ impl Window {
     pub(super) fn new(rect: &PixelRect, [edges, planes]: [usize; 2], depth: &Depth) -> Option<Self> {
         let first = [rect.x0 >> TILE_BITS, rect.y0 >> TILE_BITS];
         let last = [(rect.x1 - 1) >> TILE_BITS, (rect.y1 - 1) >> TILE_BITS];
-        if last[0] - first[0] >= SIDE || last[1] - first[1] >= SIDE {
+        if last[0] - first[0] >= MOST_TILES || last[1] - first[1] >= MOST_TILES {
             return None;
         }
         let bits = |from: u32, len: u32| ((1 << len) - 1) << (from % TILE as u32);
         let (columns, rows) = (bits(rect.x0, rect.width()), bits(rect.y0, rect.height()));
         let across = depth.across() as u32;
-        let block = first[1] / SIDE * across + first[0] / SIDE;
-        let (right, below) =
-            (u32::from(last[0] / SIDE != first[0] / SIDE), last[1] / SIDE != first[1] / SIDE);
+        let block = first[1] / BLOCK_TILES * across + first[0] / BLOCK_TILES;
+        let (right, below) = (
+            u32::from(last[0] / BLOCK_TILES != first[0] / BLOCK_TILES),
+            last[1] / BLOCK_TILES != first[1] / BLOCK_TILES,
+        );
         let below = if below { across } else { 0 };
         // From the first block's first tile.
-        let tile_columns = ((2 << (last[0] - first[0])) - 1) << (first[0] % SIDE);
-        let tile_rows = ((2 << (last[1] - first[1])) - 1) << (first[1] % SIDE);
+        let tile_columns = ((2 << (last[0] - first[0])) - 1) << (first[0] % BLOCK_TILES);
+        let tile_rows = ((2 << (last[1] - first[1])) - 1) << (first[1] % BLOCK_TILES);
         Some(Self {
             first,
             columns,

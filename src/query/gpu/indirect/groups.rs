@@ -11,24 +11,20 @@
 //! particular order; what is found does not depend on it.
 
 use bytemuck::{bytes_of, cast_slice};
-use wgpu::{
-    BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, CommandEncoder, ComputePipeline,
-    Device, Queue, ShaderStages,
-};
+use wgpu::{BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, CommandEncoder, Device, Queue};
 
-use super::super::bind::{self, DepthAs, Layouts};
+use super::super::bind::DepthAs;
 use super::super::clock::Tape;
 use super::super::counter::compiled;
-use super::super::guard::failed;
-use super::super::rectangles::{Draws, Of};
+use super::super::rectangles::{Draws, Listed, Of};
 use super::super::shaders::Shaders;
-use super::super::sweep::asked::{Asked, exactly};
-use super::super::sweep::enclose::{Enclose, Nodes};
-use super::super::sweep::flat::FlatTree;
+use super::super::sweep::array::DeviceArray;
 use super::super::sweep::mirror::Mirrored;
+use super::super::sweep::placed::PlacedTree;
 use super::super::sweep::raster::Raster;
 use super::super::sweep::rays::{self, Rays};
-use super::super::sweep::{Bound, Project, compute, dispatch};
+use super::super::sweep::stage::Stage;
+use super::super::sweep::{Bound, Project};
 use crate::Error;
 use crate::geom::{View, Viewport};
 use crate::scene::Scene;
@@ -36,35 +32,25 @@ use crate::scene::Scene;
 /// The tree on the device, and what is made of it in a frame.
 #[derive(Debug)]
 pub(super) struct Groups {
-    tree: FlatTree,
+    tree: PlacedTree,
     /// Places in the order of meshes.
     places: Mirrored<u32>,
-    enclose: Enclose,
     mark: Stage,
     extract: Stage,
     spread: Stage,
     /// For targets with one sample a pixel and with several.
     looks: [Option<(Rays, Raster)>; 2],
-    nodes: Nodes,
-    /// By place.
-    objects: Asked,
     /// By mesh.
-    verdicts: Buffer,
-    marks: Buffer,
-    groups: Buffer,
-    loose: Buffer,
+    verdicts: DeviceArray<u32>,
+    marks: DeviceArray<u32>,
+    groups: DeviceArray<Listed>,
+    loose: DeviceArray<Listed>,
     draws: Buffer,
+    /// How large a group may be.
     most: Buffer,
+    /// The same, as all stages bind it.
+    uniforms: BindGroup,
     scratch: (Vec<u32>, Vec<u32>),
-}
-
-/// A pass of one stage.
-#[derive(Debug)]
-struct Stage {
-    label: &'static str,
-    layouts: Layouts,
-    frame: BindGroup,
-    pipeline: ComputePipeline,
 }
 
 /// The draws of both lists: vertices, instances, and two times 0.
@@ -72,38 +58,29 @@ const DRAWS: [[u32; 4]; 2] = [[4, 0, 0, 0]; 2];
 
 impl Groups {
     pub(super) fn new(device: &Device, shaders: &Shaders) -> Self {
-        let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
-        let most = buffer(device, 16, uniform);
-        let stage = |label, source, entry, buffers: &[(u32, bool)]| {
-            let layouts = Layouts::new(device, ShaderStages::COMPUTE, buffers, DepthAs::Attachment);
-            let pipeline = compute(device, &layouts, &compiled(device, source), entry);
-            Stage { label, frame: bind::frame(device, &layouts.frame, &most, None), layouts, pipeline }
+        let most = buffer(device, 16, BufferUsages::UNIFORM);
+        let draws = BufferUsages::STORAGE | BufferUsages::INDIRECT | BufferUsages::COPY_SRC;
+        let draws = buffer(device, size_of_val(&DRAWS) as u64, draws);
+        let stage = |source, names, buffers: &[(u32, bool)]| {
+            Stage::new(device, &compiled(device, source), names, buffers)
         };
         let marking = [(0, false), (1, false), (2, false), (3, true)];
         let extracting = [(0, false), (1, false), (2, false), (3, true), (4, true), (5, true)];
         let spreading = [(0, false), (1, false), (2, true)];
+        let mark = stage(&shaders.mark, ("tercet mark", "mark"), &marking);
         Self {
-            tree: FlatTree::new(device),
+            tree: PlacedTree::new(device, shaders),
             places: Mirrored::new(device, "tercet places by mesh"),
-            enclose: Enclose::new(device, &compiled(device, &shaders.enclose)),
-            mark: stage("tercet mark", &shaders.mark, "mark", &marking),
-            extract: stage("tercet extract", &shaders.extract, "extract", &extracting),
-            spread: stage("tercet spread", &shaders.spread, "spread", &spreading),
+            uniforms: mark.bind(device, &most, None),
+            mark,
+            extract: stage(&shaders.extract, ("tercet extract", "extract"), &extracting),
+            spread: stage(&shaders.spread, ("tercet spread", "spread"), &spreading),
             looks: [None, None],
-            nodes: Nodes::new(device),
-            objects: Asked::new(device),
-            verdicts: storage(device, 64),
-            marks: storage(device, 64),
-            groups: rays::list(device, 64),
-            loose: rays::list(device, 64),
-            draws: buffer(
-                device,
-                size_of_val(&DRAWS) as u64,
-                BufferUsages::STORAGE
-                    | BufferUsages::INDIRECT
-                    | BufferUsages::COPY_DST
-                    | BufferUsages::COPY_SRC,
-            ),
+            verdicts: DeviceArray::written(device, "tercet verdicts by mesh"),
+            marks: DeviceArray::written(device, "tercet marks"),
+            groups: rays::list(device),
+            loose: rays::list(device),
+            draws,
             most,
             scratch: Default::default(),
         }
@@ -127,27 +104,17 @@ impl Groups {
         let (place_of, places) = &mut self.scratch;
         place_of.clear();
         place_of.resize(scene.slot_bound(), 0);
-        for (place, &slot) in (0..).zip(self.tree.slots()) {
+        for (place, &slot) in (0..).zip(self.tree.flat.slots()) {
             place_of[slot as usize] = place;
         }
         places.clear();
         places.extend(order.iter().map(|&slot| place_of[slot as usize]));
         uploaded += self.places.follow(device, queue, places)?;
-        let (nodes, objects) = (self.tree.node_count() as usize, order.len());
-        self.nodes.resize(device, nodes as u32)?;
-        self.objects.resize(device, objects)?;
-        if 4 * nodes as u64 > self.marks.size() {
-            let room = nodes + nodes / 2;
-            (self.marks, self.groups) = (storage(device, room), rays::list(device, room));
-        }
-        if 4 * objects as u64 > self.verdicts.size() {
-            let room = objects + objects / 2;
-            (self.verdicts, self.loose) = (storage(device, room), rays::list(device, room));
-        }
-        let most = device.limits().max_storage_buffer_binding_size;
-        if self.groups.size().max(self.loose.size()) > most {
-            return Err(failed(format!("it cannot bind lists of {nodes} nodes and {objects} objects")));
-        }
+        let nodes = self.tree.nodes.count() as usize;
+        self.marks.resize(device, nodes)?;
+        self.groups.resize(device, nodes)?;
+        self.verdicts.resize(device, order.len())?;
+        self.loose.resize(device, order.len())?;
         let Viewport { width, height, .. } = view.viewport();
         let pixels = share * (width as f32 * height as f32);
         queue.write_buffer(&self.most, 0, bytes_of(&[pixels, 0.0, 0.0, 0.0]));
@@ -163,8 +130,7 @@ impl Groups {
         bound: &Bound,
         boxes: BufferBinding<'_>,
     ) {
-        self.enclose.record(tape, &bound.view, &self.tree, &self.nodes);
-        project.record(tape, &bound.view, boxes, self.tree.places(), &self.objects);
+        self.tree.place(tape, (project, bound), boxes);
         self.spread(tape);
     }
 
@@ -178,16 +144,21 @@ impl Groups {
         view: &View,
         remembered: BufferBinding<'_>,
     ) {
-        let count = self.nodes.count();
-        let marks = exactly(&self.marks, count, size_of::<u32>());
-        tape.encoder.clear_buffer(marks.buffer, 0, marks.size.map(Into::into));
-        let all = [(0, self.nodes.all()), (1, self.tree.places()), (2, remembered), (3, marks.clone())];
-        self.mark.record(tape, &all, count);
-        let [groups, loose, draws] =
-            [&self.groups, &self.loose, &self.draws].map(Buffer::as_entire_buffer_binding);
-        let proxies = self.objects.proxies();
-        let all = [(0, self.nodes.all()), (1, marks), (2, proxies), (3, groups), (4, loose), (5, draws)];
-        self.extract.record(tape, &all, count);
+        tape.encoder.clear_buffer(self.marks.buffer(), 0, Some(self.marks.bytes()));
+        let Self { tree, marks, groups, loose, uniforms, .. } = &*self;
+        let PlacedTree { flat, nodes, objects, .. } = tree;
+        let all = [(0, nodes.all()), (1, flat.places()), (2, remembered), (3, marks.all())];
+        self.mark.record(tape, uniforms, &all, nodes.count());
+        let draws = self.draws.as_entire_buffer_binding();
+        let all = [
+            (0, nodes.all()),
+            (1, marks.all()),
+            (2, objects.proxies()),
+            (3, groups.all()),
+            (4, loose.all()),
+            (5, draws),
+        ];
+        self.extract.record(tape, uniforms, &all, nodes.count());
         let several = view.samples() > 1;
         let (rays, raster) = self.looks[usize::from(several)].get_or_insert_with(|| {
             let depth = DepthAs::texture(several);
@@ -199,9 +170,8 @@ impl Groups {
         });
         let draws = |which: u64| Draws::Indirect(&self.draws, which * size_of_val(&DRAWS[0]) as u64);
         let viewport = view.viewport();
-        let tree = (&self.nodes, &self.objects);
-        rays.record(tape, &bound.frame, tree, (&self.groups, draws(0)), viewport);
-        raster.record(tape, &bound.frame, &self.objects, (&self.loose, draws(1)), viewport);
+        rays.record(tape, &bound.frame, &self.tree, (self.groups.buffer(), draws(0)), viewport);
+        raster.record(tape, &bound.frame, &self.tree.objects, (self.loose.buffer(), draws(1)), viewport);
         self.spread(tape);
     }
 
@@ -215,28 +185,22 @@ impl Groups {
 
     /// What is known of all objects, in the order of meshes.
     pub(super) fn verdicts(&self) -> BufferBinding<'_> {
-        exactly(&self.verdicts, self.objects.count(), size_of::<u32>())
+        self.verdicts.all()
     }
 
     fn spread(&self, tape: &mut Tape<'_>) {
-        let all = [(0, self.objects.verdicts()), (1, self.places.binding()), (2, self.verdicts())];
-        self.spread.record(tape, &all, self.objects.count());
+        let found = &self.tree.objects;
+        let all = [(0, found.verdicts()), (1, self.places.binding()), (2, self.verdicts())];
+        self.spread.record(tape, &self.uniforms, &all, found.count());
     }
 }
 
-impl Stage {
-    fn record(&self, tape: &mut Tape<'_>, buffers: &[(u32, BufferBinding<'_>)], count: u32) {
-        let bindings = bind::storage(tape.device, &self.layouts.batch, buffers);
-        dispatch(tape, self.label, &self.pipeline, [&self.frame, &bindings], count);
-    }
-}
-
-fn storage(device: &Device, words: usize) -> Buffer {
-    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-    buffer(device, 4 * words.max(1) as u64, usage)
-}
-
+/// A buffer that the host also writes to.
 fn buffer(device: &Device, size: u64, usage: BufferUsages) -> Buffer {
-    let label = Some("tercet extraction");
-    device.create_buffer(&BufferDescriptor { label, size, usage, mapped_at_creation: false })
+    device.create_buffer(&BufferDescriptor {
+        label: Some("tercet extraction"),
+        size,
+        usage: usage | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }

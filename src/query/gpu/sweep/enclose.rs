@@ -24,18 +24,14 @@
 //! seen, whatever becomes of their nodes.
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::{
-    BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, ComputePipeline, Device, ShaderModule,
-    ShaderStages,
-};
+use wgpu::{BindGroup, BufferUsages, Device, ShaderModule};
 
-use super::asked::exactly;
+use super::array::DeviceArray;
+use super::asked::SEEN;
 use super::flat::FlatTree;
-use super::{compute, dispatch};
-use crate::Error;
-use crate::query::gpu::bind::{self, DepthAs, Layouts};
+use super::stage::Stage;
+use crate::geom::PixelRect;
 use crate::query::gpu::clock::Tape;
-use crate::query::gpu::guard::failed;
 
 /// The twin of `Node` in `shaders/shared/nodes.wgsl`.
 #[repr(C)]
@@ -52,19 +48,30 @@ pub(in crate::query::gpu) struct PackedNode {
     unused: u32,
 }
 
+impl PackedNode {
+    /// The pixels where what lies below may own samples; None if the device cannot say.
+    pub(super) fn pixels(&self) -> Option<PixelRect> {
+        let [x0, y0, x1, y1] = self.rect;
+        (self.verdict != SEEN).then_some(PixelRect { x0, y0, x1, y1 })
+    }
+}
+
+/// The nodes of a tree on the screen.
+pub(in crate::query::gpu) type Nodes = DeviceArray<PackedNode>;
+
+/// Those of no tree.
+pub(in crate::query::gpu) fn nodes(device: &Device) -> Nodes {
+    DeviceArray::new(device, "tercet nodes", BufferUsages::STORAGE | BufferUsages::COPY_SRC)
+}
+
 /// The pass.
 #[derive(Debug)]
-pub(in crate::query::gpu) struct Enclose {
-    layouts: Layouts,
-    pipeline: ComputePipeline,
-}
+pub(in crate::query::gpu) struct Enclose(Stage);
 
 impl Enclose {
     pub(in crate::query::gpu) fn new(device: &Device, module: &ShaderModule) -> Self {
         let buffers = &[(0, false), (1, false), (2, true)];
-        let layouts = Layouts::new(device, ShaderStages::COMPUTE, buffers, DepthAs::Attachment);
-        let pipeline = compute(device, &layouts, module, "enclose");
-        Self { layouts, pipeline }
+        Self(Stage::new(device, module, ("tercet enclose", "enclose"), buffers))
     }
 
     /// Records the enclosing of all nodes.
@@ -76,57 +83,8 @@ impl Enclose {
         nodes: &Nodes,
     ) {
         let [boxes, links] = tree.nodes();
-        let buffers = [(0, boxes), (1, links), (2, nodes.all())];
-        let bindings = bind::storage(tape.device, &self.layouts.batch, &buffers);
-        dispatch(tape, "tercet enclose", &self.pipeline, [view, &bindings], nodes.count());
+        self.0.record(tape, view, &[(0, boxes), (1, links), (2, nodes.all())], nodes.count());
     }
-}
-
-/// The nodes of a tree on the screen.
-#[derive(Debug)]
-pub(in crate::query::gpu) struct Nodes {
-    buffer: Buffer,
-    count: u32,
-}
-
-impl Nodes {
-    pub(in crate::query::gpu) fn new(device: &Device) -> Self {
-        Self { buffer: buffer(device, 64), count: 0 }
-    }
-
-    /// Makes room for a number of nodes. What was there is lost.
-    ///
-    /// # Errors
-    /// [`Error::Device`] if the device cannot bind so many.
-    pub(in crate::query::gpu) fn resize(&mut self, device: &Device, count: u32) -> Result<(), Error> {
-        let most = device.limits().max_storage_buffer_binding_size / size_of::<PackedNode>() as u64;
-        if u64::from(count) > most {
-            return Err(failed(format!("it binds {most} nodes at most, and there are {count}")));
-        }
-        if u64::from(count) * size_of::<PackedNode>() as u64 > self.buffer.size() {
-            self.buffer = buffer(device, u64::from(count + count / 2).min(most));
-        }
-        self.count = count;
-        Ok(())
-    }
-
-    pub(in crate::query::gpu) fn count(&self) -> u32 {
-        self.count
-    }
-
-    /// All nodes, and no more.
-    pub(in crate::query::gpu) fn all(&self) -> BufferBinding<'_> {
-        exactly(&self.buffer, self.count, size_of::<PackedNode>())
-    }
-}
-
-fn buffer(device: &Device, nodes: u64) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some("tercet nodes"),
-        size: nodes * size_of::<PackedNode>() as u64,
-        usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    })
 }
 
 #[cfg(test)]

@@ -4,13 +4,14 @@
 use std::ops::Range;
 
 use bytemuck::cast_slice;
-use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, Queue};
+use wgpu::{Buffer, Device, Queue};
 
-use super::asked::{Asked, SEEN, exactly};
+use super::array::DeviceArray;
+use super::asked::{self, SEEN, Verdicts};
 use super::boxes::PackedBox;
-use super::enclose::{Enclose, Nodes};
-use super::flat::FlatTree;
+use super::enclose::Nodes;
 use super::mirror::Mirrored;
+use super::placed::PlacedTree;
 use super::rays::{self, Enlist, Rays};
 use super::{Bound, Project};
 use crate::Error;
@@ -18,22 +19,18 @@ use crate::geom::{Frustum, Viewport};
 use crate::query::Sweep;
 use crate::query::gpu::clock::Tape;
 use crate::query::gpu::counter::compiled;
-use crate::query::gpu::guard::failed;
-use crate::query::gpu::rectangles::Draws;
+use crate::query::gpu::rectangles::{Draws, Listed};
 use crate::query::gpu::shaders::Shaders;
 use crate::scene::{ObjectId, ObjectSet, Scene};
+use crate::tree::NodeId;
 
 /// The tree on the device, with what its objects' proxies are and where its nodes lie.
 #[derive(Debug)]
 pub(super) struct Grove {
-    tree: FlatTree,
-    enclose: Enclose,
+    tree: PlacedTree,
     enlist: Enlist,
-    nodes: Nodes,
-    /// By place.
-    objects: Asked,
-    /// What was known of them before any ray.
-    first: Buffer,
+    /// What was known of the tree's objects before any ray.
+    first: Verdicts,
     /// The same objects.
     ids: Vec<ObjectId>,
     /// Whether all of it is of this frame.
@@ -43,9 +40,8 @@ pub(super) struct Grove {
 /// The groups of one sweep; buffers are reused.
 #[derive(Debug)]
 pub(super) struct Groups {
-    indices: Buffer,
-    listed: Buffer,
-    count: u32,
+    indices: DeviceArray<u32>,
+    listed: DeviceArray<Listed>,
     /// The places of the objects below them, and what these must meet.
     below: Vec<Range<usize>>,
     frustum: Option<Frustum>,
@@ -54,12 +50,9 @@ pub(super) struct Groups {
 impl Grove {
     pub(super) fn new(device: &Device, shaders: &Shaders) -> Self {
         Self {
-            tree: FlatTree::new(device),
-            enclose: Enclose::new(device, &compiled(device, &shaders.enclose)),
+            tree: PlacedTree::new(device, shaders),
             enlist: Enlist::new(device, &compiled(device, &shaders.enlist)),
-            nodes: Nodes::new(device),
-            objects: Asked::new(device),
-            first: words(device, 64, BufferUsages::COPY_SRC),
+            first: asked::verdicts(device),
             ids: Vec::new(),
             is_ready: false,
         }
@@ -78,7 +71,7 @@ impl Grove {
         &mut self,
         tape: &mut Tape<'_>,
         queue: &Queue,
-        (project, bound): (&Project, &Bound),
+        making: (&Project, &Bound),
         boxes: &Mirrored<PackedBox>,
         scene: &Scene,
     ) -> Result<u64, Error> {
@@ -87,19 +80,14 @@ impl Grove {
         }
         let device = tape.device;
         let uploaded = self.tree.follow(device, queue, scene, &[])?;
-        self.nodes.resize(device, self.tree.node_count())?;
-        let count = self.tree.slots().len();
-        self.objects.resize(device, count)?;
-        if 4 * count as u64 > self.first.size() {
-            self.first = words(device, count + count / 2, BufferUsages::COPY_SRC);
-        }
+        let slots = self.tree.flat.slots();
+        self.first.resize(device, slots.len())?;
         let store = scene.objects_store();
         self.ids.clear();
-        self.ids.extend(self.tree.slots().iter().map(|&slot| store.id(slot)));
-        self.enclose.record(tape, &bound.view, &self.tree, &self.nodes);
-        project.record(tape, &bound.view, boxes.binding(), self.tree.places(), &self.objects);
-        let verdicts = self.objects.verdicts();
-        tape.encoder.copy_buffer_to_buffer(verdicts.buffer, 0, &self.first, 0, self.bytes());
+        self.ids.extend(slots.iter().map(|&slot| store.id(slot)));
+        self.tree.place(tape, making, boxes.binding());
+        let verdicts = self.tree.objects.found().buffer();
+        tape.encoder.copy_buffer_to_buffer(verdicts, 0, self.first.buffer(), 0, self.bytes());
         self.is_ready = true;
         Ok(uploaded)
     }
@@ -115,18 +103,22 @@ impl Grove {
         viewport: Viewport,
         (to, at): (&Buffer, u64),
     ) {
-        let verdicts = self.objects.verdicts().buffer;
-        tape.encoder.copy_buffer_to_buffer(&self.first, 0, verdicts, 0, self.bytes());
-        let indices = exactly(&groups.indices, groups.count, size_of::<u32>());
-        self.enlist.record(tape, &self.nodes, (indices, groups.count), &groups.listed);
-        let list = (&groups.listed, Draws::Count(groups.count));
-        rays.record(tape, &bound.frame, (&self.nodes, &self.objects), list, viewport);
+        let verdicts = self.tree.objects.found().buffer();
+        tape.encoder.copy_buffer_to_buffer(self.first.buffer(), 0, verdicts, 0, self.bytes());
+        self.enlist.record(tape, &self.tree.nodes, groups.indices.all(), &groups.listed);
+        let list = (groups.listed.buffer(), Draws::Count(groups.count()));
+        rays.record(tape, &bound.frame, &self.tree, list, viewport);
         tape.encoder.copy_buffer_to_buffer(verdicts, 0, to, at, self.bytes());
+    }
+
+    /// Where nodes lie on the screen, by index.
+    pub(super) fn nodes(&self) -> &Nodes {
+        &self.tree.nodes
     }
 
     /// The bytes of all verdicts.
     pub(super) fn bytes(&self) -> u64 {
-        self.objects.verdicts().size.map_or(0, std::num::NonZeroU64::get)
+        self.tree.objects.found().bytes()
     }
 
     /// Adds those objects below some groups that rays, or nothing, have found in sight.
@@ -139,7 +131,7 @@ impl Grove {
     ) {
         let Some(frustum) = &groups.frustum else { return };
         for place in groups.below.iter().cloned().flatten() {
-            let slot = self.tree.slots()[place] as usize;
+            let slot = self.tree.flat.slots()[place] as usize;
             // Rays know nothing of the frustum, and what cannot be asked about is seen anywhere.
             if verdicts.get(place) == Some(&SEEN) && frustum.intersects(&boxes.known()[slot].aabb()) {
                 found.insert(self.ids[place]);
@@ -151,9 +143,8 @@ impl Grove {
 impl Groups {
     pub(super) fn new(device: &Device) -> Self {
         Self {
-            indices: words(device, 16, BufferUsages::STORAGE),
-            listed: rays::list(device, 16),
-            count: 0,
+            indices: DeviceArray::written(device, "tercet groups"),
+            listed: rays::list(device),
             below: Vec::new(),
             frustum: None,
         }
@@ -166,7 +157,7 @@ impl Groups {
 
     /// How many there are.
     pub(super) fn count(&self) -> u32 {
-        self.count
+        self.listed.count()
     }
 
     /// How many objects are below them.
@@ -174,7 +165,7 @@ impl Groups {
         self.below.iter().map(|range| range.len() as u64).sum()
     }
 
-    /// Uploads those of a sweep that hold something. The upload happens when the encoder is submitted.
+    /// Uploads those of a sweep into which rays are cast. The upload happens when the encoder is submitted.
     ///
     /// # Errors
     /// [`Error::Device`] if the device cannot bind so many.
@@ -184,32 +175,15 @@ impl Groups {
         queue: &Queue,
         grove: &Grove,
         sweep: &Sweep<'_>,
+        groups: &[NodeId],
     ) -> Result<(), Error> {
-        let tree = sweep.scene.tree();
-        let asked = sweep.groups.iter().filter(|&&group| tree.count(group) > 0);
-        let indices: Vec<u32> = asked.clone().map(|group| group.index).collect();
+        let indices: Vec<u32> = groups.iter().map(|group| group.index).collect();
         self.below.clear();
-        self.below.extend(asked.map(|&group| grove.tree.below(tree, group)));
+        self.below.extend(groups.iter().map(|&group| grove.tree.flat.below(sweep.scene.tree(), group)));
         self.frustum = Some(sweep.frustum.clone());
-        self.count = indices.len() as u32;
-        if 4 * indices.len() as u64 > self.indices.size() {
-            let room = indices.len() + indices.len() / 2;
-            (self.indices, self.listed) =
-                (words(device, room, BufferUsages::STORAGE), rays::list(device, room));
-        }
-        if self.listed.size() > device.limits().max_storage_buffer_binding_size {
-            return Err(failed(format!("it cannot bind {} groups", self.count)));
-        }
-        queue.write_buffer(&self.indices, 0, cast_slice(&indices));
+        self.indices.resize(device, indices.len())?;
+        self.listed.resize(device, indices.len())?;
+        queue.write_buffer(self.indices.buffer(), 0, cast_slice(&indices));
         Ok(())
     }
-}
-
-fn words(device: &Device, count: usize, usage: BufferUsages) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some("tercet groups"),
-        size: 4 * count.max(1) as u64,
-        usage: usage | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
 }

@@ -1,26 +1,21 @@
 //! The test against the pyramid: one invocation a box.
 
-use wgpu::{BindGroup, ComputePipeline, Device, ShaderModule};
+use wgpu::{BindGroup, Device, ShaderModule};
 
 use super::asked::Asked;
 use super::pyramid::{self, Pyramid};
-use super::{STAGES, compute, dispatch};
-use crate::query::gpu::bind::{self, DepthAs, Layouts};
+use super::stage::Stage;
+use crate::query::gpu::bind::DepthAs;
 use crate::query::gpu::clock::Tape;
 
 /// The pass.
 #[derive(Debug)]
-pub(in crate::query::gpu) struct HiZ {
-    layouts: Layouts,
-    pipeline: ComputePipeline,
-}
+pub(in crate::query::gpu) struct HiZ(Stage);
 
 impl HiZ {
     pub(in crate::query::gpu) fn new(device: &Device, module: &ShaderModule, depth: DepthAs) -> Self {
         let buffers = &[(0, false), (2, true), (pyramid::BINDING, false)];
-        let layouts = Layouts::new(device, STAGES, buffers, depth);
-        let pipeline = compute(device, &layouts, module, "look");
-        Self { layouts, pipeline }
+        Self(Stage::on_texture(device, module, ("tercet hi-z", "look"), buffers, depth))
     }
 
     /// Records the test of all proxies against a pyramid that has been built.
@@ -33,7 +28,6 @@ impl HiZ {
     ) {
         let Some(levels) = pyramid.binding() else { return };
         let buffers = [(0, asked.proxies()), (2, asked.verdicts()), (pyramid::BINDING, levels)];
-        let bindings = bind::storage(tape.device, &self.layouts.batch, &buffers);
-        dispatch(tape, "tercet hi-z", &self.pipeline, [frame, &bindings], asked.count());
+        self.0.record(tape, frame, &buffers, asked.count());
     }
 }

@@ -5,12 +5,15 @@ use bytemuck::{Pod, pod_collect_to_vec, try_cast_slice};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, MapMode};
 
 use super::asked::{OUTSIDE, SEEN};
+use super::enclose::PackedNode;
+use super::looks::Looks;
 use crate::Error;
-use crate::geom::Question;
-use crate::query::Sweep;
+use crate::geom::{PixelRect, Question};
 use crate::query::gpu::pack::PackedProxy;
 use crate::query::gpu::{GpuQueries, frame, guard};
+use crate::query::{Sweep, SweepTest};
 use crate::scene::ObjectId;
+use crate::tree::NodeId;
 
 /// A level of the pyramid of farthest depths.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +35,8 @@ impl GpuQueries {
     pub fn inspect_proxies(&mut self, sweep: &Sweep<'_>) -> Result<Vec<(ObjectId, Question)>, Error> {
         let index = self.record_looks(sweep, None)?;
         let swept = &self.sweeps.as_ref().expect("it was recorded").sweeps[index];
-        let (ids, asked) = (swept.ids.clone(), &swept.asked);
+        let (ids, asked) =
+            (swept.targets.ids.clone(), &swept.looked.as_ref().expect("it was recorded").asked);
         let [proxies, verdicts] = [asked.proxies(), asked.verdicts()].map(|binding| binding.buffer.clone());
         let proxies: Vec<PackedProxy> = self.read_now(&proxies, ids.len())?;
         let verdicts: Vec<u32> = self.read_now(&verdicts, ids.len())?;
@@ -44,6 +48,22 @@ impl GpuQueries {
         Ok(ids.into_iter().zip(proxies.into_iter().zip(verdicts).map(question)).collect())
     }
 
+    /// Into which groups a sweep by rays casts them, and over which pixels of the viewport: those of the sweep,
+    /// and what stands for such as are opened. None for the pixels of a group that the device cannot place:
+    /// its rays would go everywhere. Blocks.
+    ///
+    /// # Errors
+    /// [`Error::Target`] outside a frame; what the device reports.
+    pub fn inspect_groups(&mut self, sweep: &Sweep<'_>) -> Result<Vec<(NodeId, Option<PixelRect>)>, Error> {
+        let index = self.record_looks(sweep, Some(SweepTest::Rays))?;
+        let sweeps = self.sweeps.as_ref().expect("it was recorded");
+        let groups = sweeps.sweeps[index].targets.groups.clone();
+        let Some(nodes) = sweeps.looks.as_ref().and_then(Looks::nodes) else { return Ok(Vec::new()) };
+        let (buffer, count) = (nodes.buffer().clone(), nodes.count() as usize);
+        let nodes: Vec<PackedNode> = self.read_now(&buffer, count)?;
+        Ok(groups.into_iter().map(|group| (group, nodes[group.index()].pixels())).collect())
+    }
+
     /// The pyramid of what has been drawn so far, from half the viewport's size down to one texel.
     /// Blocks.
     ///
@@ -51,11 +71,12 @@ impl GpuQueries {
     /// [`Error::Target`] outside a frame; [`Error::Device`] for a viewport whose pyramid the device
     /// cannot bind, and what it reports.
     pub fn inspect_pyramid(&mut self) -> Result<Vec<Level>, Error> {
-        self.bind_sweeps()?;
+        self.bind_looks()?;
         let frame = self.frame.as_mut().ok_or_else(frame::not_begun)?;
         let sweeps = self.sweeps.as_mut().expect("they are bound");
-        let passes = sweeps.passes[usize::from(frame.view.samples() > 1)].as_mut().expect("made when bound");
-        let bound = sweeps.bound.as_ref().expect("they are bound");
+        let looks = sweeps.looks.as_mut().expect("they are bound");
+        let passes = looks.passes[usize::from(frame.view.samples() > 1)].as_mut().expect("made when bound");
+        let bound = looks.bound.as_ref().expect("they are bound");
         let pyramid = &mut passes.pyramid;
         guard::guarded(&self.device, || {
             let fits = pyramid.resize(&self.device, frame.view.viewport());

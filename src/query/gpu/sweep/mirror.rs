@@ -1,10 +1,10 @@
 //! Arrays of the host that the device has a copy of, uploaded by what has changed.
 
 use bytemuck::{Pod, cast_slice};
-use wgpu::{Buffer, BufferBinding, BufferDescriptor, BufferUsages, Device, Queue};
+use wgpu::{BufferBinding, BufferUsages, Device, Queue};
 
+use super::array::DeviceArray;
 use crate::Error;
-use crate::query::gpu::guard::failed;
 
 /// A storage buffer that follows an array: what the device has is kept beside it and compared, chunk
 /// by chunk. So nothing has to be reported by whoever changes the array, and nothing can be missed.
@@ -12,8 +12,7 @@ use crate::query::gpu::guard::failed;
 #[derive(Debug)]
 pub(in crate::query::gpu) struct Mirrored<T> {
     known: Vec<T>,
-    buffer: Buffer,
-    label: &'static str,
+    array: DeviceArray<T>,
 }
 
 /// Elements that are compared, and uploaded, together.
@@ -21,7 +20,8 @@ const CHUNK: usize = 32;
 
 impl<T: Pod> Mirrored<T> {
     pub(in crate::query::gpu) fn new(device: &Device, label: &'static str) -> Self {
-        Self { known: Vec::new(), buffer: buffer::<T>(device, label, CHUNK), label }
+        let usage = BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_DST;
+        Self { known: Vec::new(), array: DeviceArray::new(device, label, usage) }
     }
 
     /// Uploads what has changed, and takes the array for known; what comes back in exchange is for
@@ -35,19 +35,12 @@ impl<T: Pod> Mirrored<T> {
         queue: &Queue,
         now: &mut Vec<T>,
     ) -> Result<u64, Error> {
-        let bytes = size_of_val(now.as_slice()) as u64;
-        let most = device.limits().max_storage_buffer_binding_size;
-        if bytes > most {
-            return Err(failed(format!("{}: {bytes} bytes, and it binds {most} at most", self.label)));
-        }
-        if bytes > self.buffer.size() {
-            let room = (now.len() + now.len() / 2).min(most as usize / size_of::<T>()).max(now.len());
-            self.buffer = buffer::<T>(device, self.label, room);
+        if self.array.resize(device, now.len())? {
             self.known.clear();
         }
         let uploaded = changes(&self.known, now).map(|range| {
             let changed = cast_slice::<T, u8>(&now[range.clone()]);
-            queue.write_buffer(&self.buffer, (range.start * size_of::<T>()) as u64, changed);
+            queue.write_buffer(self.array.buffer(), (range.start * size_of::<T>()) as u64, changed);
             changed.len() as u64
         });
         let uploaded = uploaded.sum();
@@ -67,8 +60,7 @@ impl<T: Pod> Mirrored<T> {
 
     /// All elements, and no more; one if there is none.
     pub(in crate::query::gpu) fn binding(&self) -> BufferBinding<'_> {
-        let bytes = (self.known.len().max(1) * size_of::<T>()) as u64;
-        BufferBinding { buffer: &self.buffer, offset: 0, size: bytes.try_into().ok() }
+        self.array.all()
     }
 }
 
@@ -85,15 +77,6 @@ fn changes<T: Pod>(known: &[T], now: &[T]) -> impl Iterator<Item = std::ops::Ran
         let end = (first + 1..chunks).find(|&chunk| !differs(chunk)).unwrap_or(chunks);
         at = end;
         Some(first * CHUNK..(end * CHUNK).min(count))
-    })
-}
-
-fn buffer<T>(device: &Device, label: &'static str, count: usize) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some(label),
-        size: (count.max(1) * size_of::<T>()) as u64,
-        usage: BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
     })
 }
 

@@ -13,19 +13,22 @@
 //!
 //! | file | |
 //! |---|---|
+//! | `array`, `stage` | arrays on the device that grow, and what all stages have in common |
 //! | `boxes`, `mirror` | the objects' boxes on the device, uploaded by what has changed |
 //! | `view`, `project` | a view's uniforms, and proxies from boxes |
 //! | `asked` | proxies and verdicts |
 //! | `raster` | the test of ROC: draw the proxies |
-//! | `flat`, `enclose` | the tree on the device, and where its nodes lie on the screen |
+//! | `flat`, `enclose`, `placed` | the tree on the device, and where its nodes and objects lie on the screen |
 //! | `rays` | the test of HROC: draw groups, and send rays down the tree |
 //! | `grove` | what sweeps by rays keep for a frame |
 //! | `pyramid`, `hi_z` | the test of Rákos 2010: compare with the farthest depth around |
 //! | `owners` | who owns a sample, by an item buffer |
-//! | `answer` | sweeps of a policy: one read-back each |
+//! | `answer`, `swept` | sweeps of a policy: one read-back each |
+//! | `looks`, `targets` | those that look at boxes, and what they look at |
 //! | `inspect` | what the device has made, to look at |
 
 pub(super) mod answer;
+pub(super) mod array;
 pub(super) mod asked;
 pub(super) mod boxes;
 pub(super) mod enclose;
@@ -33,18 +36,20 @@ pub(super) mod flat;
 mod grove;
 mod hi_z;
 mod inspect;
+mod looks;
 pub(super) mod mirror;
 pub(super) mod owners;
+pub(super) mod placed;
 pub(super) mod project;
 pub(super) mod pyramid;
 pub(super) mod raster;
 pub(super) mod rays;
+pub(super) mod stage;
+mod swept;
+mod targets;
 pub(super) mod view;
 
-use wgpu::{
-    BindGroup, Buffer, ComputePipeline, ComputePipelineDescriptor, Device, ShaderModule, ShaderStages,
-    TextureView,
-};
+use wgpu::{BindGroup, Buffer, Device, TextureView};
 
 pub use inspect::Level;
 
@@ -58,14 +63,12 @@ use crate::Error;
 use crate::geom::Viewport;
 use asked::Asked;
 use hi_z::HiZ;
-use owners::Owners;
 pub(super) use project::Project;
 use pyramid::Pyramid;
 use raster::Raster;
 use rays::Rays;
-
-/// The stages that read the frame and the depth.
-const STAGES: ShaderStages = ShaderStages::VERTEX_FRAGMENT.union(ShaderStages::COMPUTE);
+use stage::STAGES;
+pub(super) use stage::{LANES, compute, grid};
 
 /// The passes, for targets with one sample a pixel or with several.
 #[derive(Debug)]
@@ -76,8 +79,6 @@ pub(super) struct Passes {
     pub(super) raster: Raster,
     /// Made when first needed.
     rays: Option<Rays>,
-    /// The same.
-    owners: Option<Owners>,
     pub(super) pyramid: Pyramid,
     pub(super) hi_z: HiZ,
 }
@@ -104,7 +105,6 @@ impl Passes {
                 project: Project::new(device, &compiled(device, &shaders.project)),
                 raster: Raster::new(device, &module(&shaders.sweep_raster), depth, Of::Proxies),
                 rays: None,
-                owners: None,
                 pyramid: Pyramid::new(device, &module(&shaders.build_pyramid), depth),
                 hi_z: HiZ::new(device, &module(&shaders.sweep_hi_z), depth),
             }
@@ -127,21 +127,10 @@ impl Passes {
         }
     }
 
-    /// The pass that looks through item buffers.
-    fn owners(&mut self, device: &Device, shaders: &Shaders, several: bool) -> Result<&Owners, Error> {
-        match &mut self.owners {
-            Some(owners) => Ok(owners),
-            none => Ok(none.insert(guarded(device, || {
-                let module = compiled(device, shaders.sweep_owners.source(several));
-                Owners::new(device, &module, several)
-            })?)),
-        }
-    }
-
     /// Binds a view's and a frame's uniforms, and its depth.
     pub(super) fn bind(&self, device: &Device, view: &Buffer, frame: &Buffer, depth: &TextureView) -> Bound {
         Bound {
-            view: bind::frame(device, &self.project.layouts.frame, view, None),
+            view: self.project.bind(device, view),
             frame: bind::frame(device, &self.frame.frame, frame, Some(depth)),
         }
     }
@@ -163,47 +152,4 @@ impl Passes {
             self.raster.record(tape, &bound.frame, asked, instances, viewport);
         }
     }
-}
-
-/// A stage that computes.
-pub(super) fn compute(
-    device: &Device,
-    layouts: &Layouts,
-    module: &ShaderModule,
-    entry: &str,
-) -> ComputePipeline {
-    device.create_compute_pipeline(&ComputePipelineDescriptor {
-        label: Some("tercet sweep"),
-        layout: Some(&layouts.pipeline),
-        module,
-        entry_point: Some(entry),
-        compilation_options: Default::default(),
-        cache: None,
-    })
-}
-
-/// Invocations a workgroup of the stages that look at boxes, as the shaders have them.
-pub(super) const LANES: u32 = 64;
-
-/// Records a pass of one stage over a number of boxes. There may be more workgroups than boxes need.
-pub(super) fn dispatch(
-    tape: &mut Tape<'_>,
-    label: &str,
-    pipeline: &ComputePipeline,
-    groups: [&BindGroup; 2],
-    count: u32,
-) {
-    let [columns, rows] = grid(tape.device, count.div_ceil(LANES));
-    let mut pass = tape.compute_pass(label);
-    pass.set_pipeline(pipeline);
-    for (index, group) in (0..).zip(groups) {
-        pass.set_bind_group(index, group, &[]);
-    }
-    pass.dispatch_workgroups(columns, rows, 1);
-}
-
-/// Columns and rows of at least so many workgroups.
-pub(super) fn grid(device: &Device, groups: u32) -> [u32; 2] {
-    let rows = groups.div_ceil(device.limits().max_compute_workgroups_per_dimension).max(1);
-    [groups.div_ceil(rows), rows]
 }

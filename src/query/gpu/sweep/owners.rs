@@ -4,28 +4,31 @@
 //! depth test. So nothing is drawn twice, and each sample has one owner: of several objects at the same
 //! depth, the one that was drawn last.
 
-use wgpu::{
-    Buffer, BufferBinding, ComputePipeline, Device, ShaderModule, TextureFormat, TextureUsages, TextureView,
-};
+use wgpu::{Buffer, Device, TextureFormat, TextureUsages, TextureView};
 
-use super::{STAGES, compute};
+use super::asked::Verdicts;
+use super::stage::Stage;
 use crate::Error;
 use crate::geom::Viewport;
-use crate::query::gpu::bind::{self, DepthAs, Layouts};
+use crate::query::gpu::bind::DepthAs;
 use crate::query::gpu::clock::Tape;
+use crate::query::gpu::counter::compiled;
+use crate::query::gpu::guard::guarded;
+use crate::query::gpu::shaders::Shaders;
 
 /// The pass.
 #[derive(Debug)]
-pub(super) struct Owners {
-    layouts: Layouts,
-    pipeline: ComputePipeline,
-}
+pub(super) struct Owners(Stage);
 
 impl Owners {
-    pub(super) fn new(device: &Device, module: &ShaderModule, multisampled: bool) -> Self {
-        let layouts = Layouts::new(device, STAGES, &[(2, true)], DepthAs::Ids { multisampled });
-        let pipeline = compute(device, &layouts, module, "look");
-        Self { layouts, pipeline }
+    /// # Errors
+    /// [`Error::Device`] if the device refuses it.
+    pub(super) fn new(device: &Device, shaders: &Shaders, multisampled: bool) -> Result<Self, Error> {
+        guarded(device, || {
+            let module = compiled(device, shaders.sweep_owners.source(multisampled));
+            let ids = DepthAs::Ids { multisampled };
+            Self(Stage::on_texture(device, &module, ("tercet owners", "look"), &[(2, true)], ids))
+        })
     }
 
     /// Records the looking through an item buffer: verdicts are by slot, and are none at first.
@@ -33,19 +36,12 @@ impl Owners {
         &self,
         tape: &mut Tape<'_>,
         (frame, ids): (&Buffer, &TextureView),
-        verdicts: BufferBinding<'_>,
+        verdicts: &Verdicts,
         viewport: Viewport,
     ) {
-        /// Invocations along each side of a workgroup, as the shader has them.
-        const SIDE: u32 = 8;
-        tape.encoder.clear_buffer(verdicts.buffer, 0, verdicts.size.map(Into::into));
-        let frame = bind::frame(tape.device, &self.layouts.frame, frame, Some(ids));
-        let bindings = bind::storage(tape.device, &self.layouts.batch, &[(2, verdicts)]);
-        let mut pass = tape.compute_pass("tercet owners");
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &frame, &[]);
-        pass.set_bind_group(1, &bindings, &[]);
-        pass.dispatch_workgroups(viewport.width.div_ceil(SIDE), viewport.height.div_ceil(SIDE), 1);
+        tape.encoder.clear_buffer(verdicts.buffer(), 0, Some(verdicts.bytes()));
+        let frame = self.0.bind(tape.device, frame, Some(ids));
+        self.0.record_pixels(tape, &frame, &[(2, verdicts.all())], viewport);
     }
 }
 

@@ -36,26 +36,25 @@
 //! Against the proxies of the CPU these are a little larger and nearer, and usually hold them; they
 //! hold the geometry always. `tests/gpu/sweep.rs` measures by how much.
 
-use wgpu::{BindGroup, BufferBinding, ComputePipeline, Device, ShaderModule, ShaderStages};
+use wgpu::{BindGroup, Buffer, BufferBinding, Device, ShaderModule};
 
 use super::asked::Asked;
-use super::{compute, dispatch};
-use crate::query::gpu::bind::{self, DepthAs, Layouts};
+use super::stage::Stage;
 use crate::query::gpu::clock::Tape;
 
 /// The pass.
 #[derive(Debug)]
-pub(in crate::query::gpu) struct Project {
-    pub(in crate::query::gpu) layouts: Layouts,
-    pipeline: ComputePipeline,
-}
+pub(in crate::query::gpu) struct Project(Stage);
 
 impl Project {
     pub(in crate::query::gpu) fn new(device: &Device, module: &ShaderModule) -> Self {
         let buffers = &[(0, false), (1, false), (2, true), (3, true)];
-        let layouts = Layouts::new(device, ShaderStages::COMPUTE, buffers, DepthAs::Attachment);
-        let pipeline = compute(device, &layouts, module, "project");
-        Self { layouts, pipeline }
+        Self(Stage::new(device, module, ("tercet project", "project"), buffers))
+    }
+
+    /// Binds a view, for this stage and that of nodes.
+    pub(super) fn bind(&self, device: &Device, view: &Buffer) -> BindGroup {
+        self.0.bind(device, view, None)
     }
 
     /// Records the making of proxies and first verdicts of the boxes at some slots.
@@ -68,7 +67,6 @@ impl Project {
         asked: &Asked,
     ) {
         let buffers = [(0, boxes), (1, slots), (2, asked.proxies()), (3, asked.verdicts())];
-        let bindings = bind::storage(tape.device, &self.layouts.batch, &buffers);
-        dispatch(tape, "tercet project", &self.pipeline, [view, &bindings], asked.count());
+        self.0.record(tape, view, &buffers, asked.count());
     }
 }

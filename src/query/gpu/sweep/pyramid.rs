@@ -9,7 +9,7 @@ use wgpu::{
     BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, ComputePipeline, Device, ShaderModule,
 };
 
-use super::{STAGES, compute};
+use super::stage::{STAGES, compute, tiles};
 use crate::geom::Viewport;
 use crate::query::gpu::bind::{self, DepthAs, Layouts};
 use crate::query::gpu::clock::Tape;
@@ -75,16 +75,15 @@ impl Pyramid {
 
     /// Records the building from the depth of a frame.
     pub(in crate::query::gpu) fn record(&self, tape: &mut Tape<'_>, frame: &BindGroup) {
-        /// Invocations along each side of a workgroup, as the shader has them.
-        const SIDE: u32 = 8;
         let Some(Levels { sizes, bindings, .. }) = &self.levels else { return };
         let mut pass = tape.compute_pass("tercet pyramid");
         pass.set_bind_group(0, frame, &[]);
         pass.set_bind_group(1, bindings, &[]);
-        for (level, [width, height]) in (0..).zip(sizes) {
+        for (level, &size) in (0..).zip(sizes) {
+            let [columns, rows] = tiles(size);
             pass.set_pipeline(if level == 0 { &self.first } else { &self.next });
             // The grid's depth says which level it is; only its first layer works.
-            pass.dispatch_workgroups(width.div_ceil(SIDE), height.div_ceil(SIDE), level.max(1));
+            pass.dispatch_workgroups(columns, rows, level.max(1));
         }
     }
 }

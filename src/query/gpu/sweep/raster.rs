@@ -3,25 +3,21 @@
 
 use wgpu::{BindGroup, Buffer, Device, ShaderModule};
 
-use super::STAGES;
 use super::asked::Asked;
+use super::stage::Drawn;
 use crate::geom::Viewport;
-use crate::query::gpu::bind::{self, DepthAs, Layouts};
+use crate::query::gpu::bind::DepthAs;
 use crate::query::gpu::clock::Tape;
-use crate::query::gpu::rectangles::{Draws, Of, Rectangles};
+use crate::query::gpu::rectangles::{Draws, Of};
 
 /// The pass.
 #[derive(Debug)]
-pub(in crate::query::gpu) struct Raster {
-    layouts: Layouts,
-    rectangles: Rectangles,
-}
+pub(in crate::query::gpu) struct Raster(Drawn);
 
 impl Raster {
     pub(in crate::query::gpu) fn new(device: &Device, module: &ShaderModule, depth: DepthAs, of: Of) -> Self {
-        let layouts = Layouts::new(device, STAGES, &[(0, false), (2, true)], depth);
-        let rectangles = Rectangles::new(device, &layouts, module, of, ("tercet raster", "look"));
-        Self { layouts, rectangles }
+        let buffers = &[(0, false), (2, true)];
+        Self(Drawn::new(device, module, ("tercet raster", "look"), buffers, (of, depth)))
     }
 
     /// Records the looking for samples in sight, of all instances that have a rectangle.
@@ -34,7 +30,6 @@ impl Raster {
         viewport: Viewport,
     ) {
         let buffers = [(0, asked.proxies()), (2, asked.verdicts())];
-        let bindings = bind::storage(tape.device, &self.layouts.batch, &buffers);
-        self.rectangles.record(tape, [frame, &bindings], instances, viewport);
+        self.0.record(tape, frame, &buffers, instances, viewport);
     }
 }

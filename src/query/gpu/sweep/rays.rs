@@ -4,93 +4,74 @@
 //! The paper draws a group's box, and only what passes the depth test casts a ray. Here the first
 //! node that a ray looks at is the group itself, and one that does not meet it ends there: the depth
 //! is read anyway.
+//!
+//! No ray is cast for a group that holds the eye, nor for one that covers more of the screen than its asker's
+//! share: a policy opens both before it asks, and `targets` whatever the device cannot place.
 
-use wgpu::{
-    BindGroup, Buffer, BufferBinding, BufferDescriptor, BufferUsages, ComputePipeline, Device, ShaderModule,
-    ShaderStages,
-};
+use wgpu::{BindGroup, Buffer, BufferBinding, BufferUsages, Device, ShaderModule};
 
-use super::asked::{Asked, exactly};
+use super::array::DeviceArray;
 use super::enclose::Nodes;
-use super::{STAGES, compute, dispatch};
+use super::placed::PlacedTree;
+use super::stage::{Drawn, Stage};
 use crate::geom::Viewport;
-use crate::query::gpu::bind::{self, DepthAs, Layouts};
+use crate::query::gpu::bind::DepthAs;
 use crate::query::gpu::clock::Tape;
-use crate::query::gpu::rectangles::{Draws, Listed, Of, Rectangles};
+use crate::query::gpu::rectangles::{Draws, Listed, Of};
 
 /// The pass that casts rays.
 #[derive(Debug)]
-pub(in crate::query::gpu) struct Rays {
-    layouts: Layouts,
-    rectangles: Rectangles,
-}
+pub(in crate::query::gpu) struct Rays(Drawn);
 
 impl Rays {
     pub(in crate::query::gpu) fn new(device: &Device, module: &ShaderModule, depth: DepthAs) -> Self {
-        let layouts = Layouts::new(device, STAGES, &[(0, false), (2, true), (3, false)], depth);
-        let rectangles = Rectangles::new(device, &layouts, module, Of::List, ("tercet rays", "cast_ray"));
-        Self { layouts, rectangles }
+        let buffers = &[(0, false), (2, true), (3, false)];
+        Self(Drawn::new(device, module, ("tercet rays", "cast_ray"), buffers, (Of::List, depth)))
     }
 
-    /// Records the casting of the rays of all groups in a list. `objects` are those of the tree, by
-    /// place.
+    /// Records the casting of the rays of all groups in a list.
     pub(in crate::query::gpu) fn record(
         &mut self,
         tape: &mut Tape<'_>,
         frame: &BindGroup,
-        (nodes, objects): (&Nodes, &Asked),
+        tree: &PlacedTree,
         list: (&Buffer, Draws<'_>),
         viewport: Viewport,
     ) {
+        let PlacedTree { objects, nodes, .. } = tree;
         let buffers = [(0, objects.proxies()), (2, objects.verdicts()), (3, nodes.all())];
-        let bindings = bind::storage(tape.device, &self.layouts.batch, &buffers);
-        self.rectangles.record(tape, [frame, &bindings], list, viewport);
+        self.0.record(tape, frame, &buffers, list, viewport);
     }
 }
 
 /// The pass that lists the groups of a sweep.
 #[derive(Debug)]
 pub(super) struct Enlist {
-    layouts: Layouts,
-    /// Nothing, but group 0 must be something.
+    stage: Stage,
     nothing: BindGroup,
-    pipeline: ComputePipeline,
 }
 
 impl Enlist {
     pub(super) fn new(device: &Device, module: &ShaderModule) -> Self {
         let buffers = &[(0, false), (1, false), (2, true)];
-        let layouts = Layouts::new(device, ShaderStages::COMPUTE, buffers, DepthAs::Attachment);
-        let unread = device.create_buffer(&BufferDescriptor {
-            label: Some("tercet nothing"),
-            size: 16,
-            usage: BufferUsages::UNIFORM,
-            mapped_at_creation: false,
-        });
-        let pipeline = compute(device, &layouts, module, "enlist");
-        Self { nothing: bind::frame(device, &layouts.frame, &unread, None), layouts, pipeline }
+        let stage = Stage::new(device, module, ("tercet enlist", "enlist"), buffers);
+        Self { nothing: stage.bind_nothing(device), stage }
     }
 
-    /// Records the listing of so many groups, which are indices of nodes.
+    /// Records the listing of groups, which are indices of nodes.
     pub(super) fn record(
         &self,
         tape: &mut Tape<'_>,
         nodes: &Nodes,
-        (groups, count): (BufferBinding<'_>, u32),
-        to: &Buffer,
+        groups: BufferBinding<'_>,
+        to: &DeviceArray<Listed>,
     ) {
-        let buffers = [(0, nodes.all()), (1, groups), (2, exactly(to, count, size_of::<Listed>()))];
-        let bindings = bind::storage(tape.device, &self.layouts.batch, &buffers);
-        dispatch(tape, "tercet enlist", &self.pipeline, [&self.nothing, &bindings], count);
+        let buffers = [(0, nodes.all()), (1, groups), (2, to.all())];
+        self.stage.record(tape, &self.nothing, &buffers, to.count());
     }
 }
 
-/// Room for a list of so many.
-pub(in crate::query::gpu) fn list(device: &Device, count: usize) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some("tercet listed"),
-        size: (count.max(1) * size_of::<Listed>()) as u64,
-        usage: BufferUsages::STORAGE | BufferUsages::VERTEX,
-        mapped_at_creation: false,
-    })
+/// A list whose rectangles are drawn.
+pub(in crate::query::gpu) fn list(device: &Device) -> DeviceArray<Listed> {
+    DeviceArray::new(device, "tercet listed", BufferUsages::STORAGE | BufferUsages::VERTEX)
 }

@@ -29,10 +29,10 @@ pub(in crate::query::gpu) struct PackedView {
 
 /// How many times [`View::clip_error`] is allowed for: twice as in `geom/project.rs`, once for the
 /// corners' own evaluation in f32, and some for the rounding of all that is made of it.
-const SHARE: f64 = 3.25;
+pub(super) const SHARE: f64 = 3.25;
 
 /// Half of the distance from 1 to the next f32.
-const UNIT: f32 = 1.0 / 16_777_216.0;
+pub(super) const UNIT: f32 = 1.0 / 16_777_216.0;
 
 /// Clip coordinates beyond this could overflow in what is made of them.
 const GREATEST: f64 = 1e15;
@@ -44,8 +44,6 @@ impl PackedView {
         let at_origin = view.clip_error(DVec3::ZERO);
         let along = |axis| view.clip_error(axis) - at_origin;
         let error = DMat4::from_cols(along(DVec3::X), along(DVec3::Y), along(DVec3::Z), at_origin) * SHARE;
-        let farthest =
-            view.clip_error(DVec3::splat(f64::from(FARTHEST))).max_element() / (16.0 * f64::from(UNIT));
         let world = *view.world_from_clip();
         let scale = world.to_cols_array().into_iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let (step_share, step) = match view.format() {
@@ -68,10 +66,17 @@ impl PackedView {
             step,
             cleared: view.depth().cleared(),
             slack,
-            askable: u32::from(farthest < GREATEST),
+            askable: u32::from(is_askable(view)),
             unused: 0,
         }
     }
+}
+
+/// Whether any box can be asked about in f32.
+pub(super) fn is_askable(view: &View) -> bool {
+    let farthest =
+        view.clip_error(DVec3::splat(f64::from(FARTHEST))).max_element() / (16.0 * f64::from(UNIT));
+    farthest < GREATEST
 }
 
 /// A silhouette: three bits a corner, four corners a pair of edges, and how many pairs there are.
