@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use tercet::draw::Detail;
 use tercet::geom::View;
 use tercet::policy::Policy;
+use tercet::query::SweepTest;
 use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::{TreeConfig, TreeStats};
 use tercet::{Culler, Tradeoff};
@@ -20,13 +21,16 @@ use super::reference::Reference;
 use super::report::{FrameRecord, Setting, Summary, TreeFigures, percentile};
 use super::run::{Eye, Frame};
 use super::scenario::Scenario;
-use super::stage::Stage;
+use super::stage::{Gpu, Listed, Stage, gpu_driven};
+use super::twin::Twin;
 
 /// One way of culling: a scene, an eye and a backend of its own.
 pub struct Lane {
     scene: Scene,
     eye: Eye,
     stage: Stage,
+    /// The world, if the stage adds to it.
+    twin: Option<Twin>,
     /// Finds what a policy draws that is itself a reference.
     reference: Reference,
     records: Vec<FrameRecord>,
@@ -90,10 +94,20 @@ impl Lane {
             scene,
             eye,
             stage,
+            twin: None,
             reference: Reference::new(Painter { detail }, false),
             records: Vec::new(),
             built: TreeStats::default(),
         })
+    }
+
+    /// A lane in which the device culls by itself, by a test; for `hroc` in a fine tree.
+    ///
+    /// # Errors
+    /// Where the flags ask for less than full detail, or the device cannot do it.
+    pub fn gpu_driven(gpu: Gpu, flags: &Flags, test: SweepTest, tree: TreeConfig) -> anyhow::Result<Self> {
+        let stage = Stage::gpu_driven(gpu, test, flags.detail()?)?;
+        Self::on(stage, flags, Box::new(Listed::new(test)), gpu_driven::tree(test, tree))
     }
 
     /// The same with another way between speed and accuracy, as finely drawn as that says. The tree is
@@ -113,7 +127,16 @@ impl Lane {
     /// Runs one frame, clocked as in the demos: sync, cull with its draws, adapt. A reference finds
     /// what it is to draw outside the clock.
     fn frame(&mut self, world: &World, view: &View) -> anyhow::Result<()> {
-        let Self { scene, eye, stage, reference, .. } = self;
+        let Self { scene, eye, stage, twin, reference, .. } = self;
+        let world = match stage {
+            Stage::GpuDriven(stage) => {
+                let twin = twin.get_or_insert_with(|| Twin::new(world));
+                twin.follow(world);
+                stage.dress(&mut twin.world);
+                &twin.world
+            }
+            _ => world,
+        };
         let synced = scene.sync(world);
         reference.look(scene, world, view, eye)?;
         let drawn = stage.frame(eye, scene, world, view)?;

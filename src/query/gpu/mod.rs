@@ -94,6 +94,7 @@ pub use counter::Counting;
 pub use indirect::{BatchMesh, IndirectBatch, IndirectConfig, IndirectCuller, IndirectStats};
 pub use shaders::{Shader, Shaders};
 pub use sweep::Level;
+pub(crate) use sweep::mirror::Mirrored;
 pub use targets::{ColorTarget, DepthTarget, FrameTargets};
 
 use super::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};

@@ -10,7 +10,7 @@ use crate::query::gpu::guard::failed;
 /// by chunk. So nothing has to be reported by whoever changes the array, and nothing can be missed.
 /// An array that stays as it is costs a comparison at the speed of memory, and no upload.
 #[derive(Debug)]
-pub(in crate::query::gpu) struct Mirrored<T> {
+pub(crate) struct Mirrored<T> {
     known: Vec<T>,
     buffer: Buffer,
     label: &'static str,
@@ -20,7 +20,7 @@ pub(in crate::query::gpu) struct Mirrored<T> {
 const CHUNK: usize = 32;
 
 impl<T: Pod> Mirrored<T> {
-    pub(in crate::query::gpu) fn new(device: &Device, label: &'static str) -> Self {
+    pub(crate) fn new(device: &Device, label: &'static str) -> Self {
         Self { known: Vec::new(), buffer: buffer::<T>(device, label, CHUNK), label }
     }
 
@@ -29,7 +29,7 @@ impl<T: Pod> Mirrored<T> {
     ///
     /// # Errors
     /// [`Error::Device`] if the device cannot bind so many.
-    pub(in crate::query::gpu) fn follow(
+    pub(crate) fn follow(
         &mut self,
         device: &Device,
         queue: &Queue,
@@ -56,17 +56,17 @@ impl<T: Pod> Mirrored<T> {
     }
 
     /// The array as the device has it.
-    pub(in crate::query::gpu) fn known(&self) -> &[T] {
+    pub(crate) fn known(&self) -> &[T] {
         &self.known
     }
 
     /// How many elements there are.
-    pub(in crate::query::gpu) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.known.len()
     }
 
     /// All elements, and no more; one if there is none.
-    pub(in crate::query::gpu) fn binding(&self) -> BufferBinding<'_> {
+    pub(crate) fn binding(&self) -> BufferBinding<'_> {
         let bytes = (self.known.len().max(1) * size_of::<T>()) as u64;
         BufferBinding { buffer: &self.buffer, offset: 0, size: bytes.try_into().ok() }
     }
