@@ -1,8 +1,6 @@
 //! What the device has drawn of a frame that it culled by itself: read back when the frame is over, for
 //! figures and pictures. An app has no need of it.
 
-use std::collections::HashMap;
-
 use anyhow::{Context, bail};
 use tercet::query::gpu::{IndirectBatch, wgpu};
 use tercet::scene::Batch;
@@ -41,26 +39,27 @@ impl Lists {
     /// # Errors
     /// What the device reports.
     pub fn read(&self, gpu: &Gpu) -> anyhow::Result<Vec<(Batch, Vec<u32>)>> {
-        let words = read_all(gpu, self.draws.iter().flat_map(|draw| [&draw.instances, &draw.arguments]))?;
+        let known = read_all(gpu, self.draws.iter().flat_map(|draw| [&draw.instances, &draw.arguments]))?;
+        let words = |buffer: &Buffer| known.iter().find(|(known, _)| **known == *buffer).map(|(_, words)| words);
         let slots = |draw: &Draw| {
-            let count = words[&draw.arguments][draw.arguments_offset as usize / 4 + 1] as usize;
-            let first = draw.instances_offset as usize / 4;
-            let slots = words[&draw.instances].get(first..first + count);
-            slots.map(|slots| (draw.batch, slots.to_vec())).context("the device draws more than there is")
+            let (first, at) = (draw.instances_offset as usize / 4, draw.arguments_offset as usize / 4);
+            let count = *words(&draw.arguments)?.get(at + 1)? as usize;
+            Some((draw.batch, words(&draw.instances)?.get(first..first + count)?.to_vec()))
         };
-        self.draws.iter().map(slots).collect()
+        let all: Option<_> = self.draws.iter().map(slots).collect();
+        all.context("the device draws more than there is")
     }
 }
 
-/// The words of buffers, each read once.
+/// The words of buffers, each read once. There are few: draws share them.
 fn read_all<'a>(
     gpu: &Gpu,
     buffers: impl Iterator<Item = &'a Buffer>,
-) -> anyhow::Result<HashMap<&'a Buffer, Vec<u32>>> {
-    let mut copies: HashMap<&Buffer, Buffer> = HashMap::new();
+) -> anyhow::Result<Vec<(&'a Buffer, Vec<u32>)>> {
+    let mut copies: Vec<(&Buffer, Buffer)> = Vec::new();
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     for buffer in buffers {
-        copies.entry(buffer).or_insert_with(|| {
+        if copies.iter().all(|(known, _)| *known != buffer) {
             let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("read back"),
                 size: buffer.size(),
@@ -68,11 +67,11 @@ fn read_all<'a>(
                 mapped_at_creation: false,
             });
             encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
-            copy
-        });
+            copies.push((buffer, copy));
+        }
     }
     gpu.queue.submit([encoder.finish()]);
-    copies.values().for_each(|copy| copy.map_async(wgpu::MapMode::Read, .., |_| ()));
+    copies.iter().for_each(|(_, copy)| copy.map_async(wgpu::MapMode::Read, .., |_| ()));
     gpu.wait()?;
     let read = |(buffer, copy): (&'a Buffer, Buffer)| {
         let Ok(bytes) = copy.get_mapped_range(..) else { bail!("{} gives nothing back", gpu.adapter()) };
