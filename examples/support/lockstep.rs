@@ -235,3 +235,44 @@ fn judge(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::env;
+
+    use clap::Parser;
+    use tercet::policy;
+
+    use super::*;
+
+    /// Bunnies move, and each lane sees them: what the device drew is read back whole, and nothing is lost.
+    #[test]
+    fn lanes_in_which_the_device_culls_are_judged_as_the_others_are() -> anyhow::Result<()> {
+        let line = "example --frames 5 --size 96x54 --scale 0.03 --objects 8 --full-detail --oracle";
+        let flags = Flags::try_parse_from(line.split_whitespace())?;
+        let Some(gpu) = Gpu::open()? else {
+            let required = env::var("TERCET_REQUIRE_GPU").is_ok_and(|value| value == "1");
+            anyhow::ensure!(!required, "there is no adapter, and TERCET_REQUIRE_GPU is 1");
+            return Ok(());
+        };
+        let mut lanes = vec![Lane::new(&flags, policy::by_name("roc")?, flags.tree()?)?];
+        for test in [SweepTest::HiZ, SweepTest::Raster, SweepTest::Rays] {
+            lanes.push(Lane::gpu_driven(gpu.clone(), &flags, test, flags.tree()?)?);
+        }
+        let measured = run(Scenario::power_plant(&flags, true)?, &flags, lanes, || ())?;
+        let names: Vec<_> = measured.iter().map(|lane| lane.summary.policy.as_str()).collect();
+        assert_eq!(names, ["roc", "hi-z", "roc", "hroc"]);
+        for Measured { summary, frames } in &measured {
+            assert_eq!(summary.false_culls, Some(0), "{summary:?}");
+            for frame in frames {
+                assert_eq!(frame.wrong_pixels, Some(0), "{frame:?}");
+                assert!(frame.exact_visible.is_some_and(|exact| exact <= frame.drawn), "{frame:?}");
+            }
+        }
+        let drawn = |lane: usize| measured[lane].frames.iter().map(|frame| frame.drawn).collect::<Vec<_>>();
+        assert_eq!(drawn(2), drawn(3), "rays find what rasters find");
+        assert!(measured[2].summary.drawn.mean < measured[2].summary.in_frustum.mean);
+        assert!(measured[2].frames.iter().all(|frame| frame.drawn_triangles > u64::from(frame.drawn)));
+        Ok(())
+    }
+}
