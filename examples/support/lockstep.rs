@@ -242,6 +242,7 @@ mod tests {
 
     use clap::Parser;
     use tercet::policy;
+    use tercet::scene::Bounds;
 
     use super::*;
 
@@ -273,6 +274,17 @@ mod tests {
         assert_eq!(drawn(2), drawn(3), "rays find what rasters find");
         assert!(measured[2].summary.drawn.mean < measured[2].summary.in_frustum.mean);
         assert!(measured[2].frames.iter().all(|frame| frame.drawn_triangles > u64::from(frame.drawn)));
+
+        let mut scenario = Scenario::power_plant(&flags, true)?;
+        let mut lane = Lane::gpu_driven(gpu, &flags, SweepTest::Raster, flags.tree()?)?;
+        for frame in 0..3 {
+            scenario.step();
+            lane.frame(&scenario.world, &scenario.view(frame, &flags)?)?;
+        }
+        for object in lane.scene.objects() {
+            let bounds = scenario.world.get::<&Bounds>(object.object.entity())?.0;
+            assert_eq!(object.bounds, Some(bounds), "the lane knows where everything is");
+        }
         Ok(())
     }
 }
