@@ -10,6 +10,7 @@ use std::collections::HashMap;
 
 use bytemuck::{Pod, Zeroable};
 use hecs::{Entity, World};
+use rayon::prelude::*;
 use wgpu::{BufferBinding, Device, IndexFormat, Queue, RenderPass};
 
 use super::batch::Instance;
@@ -65,6 +66,9 @@ pub struct BySlot {
     meshes: Vec<BatchMesh>,
 }
 
+/// Objects that a thread takes at a time, at least: tens of microseconds of work.
+const LEAST: usize = 1024;
+
 /// The twin of `Object` in `shaders/by_slot.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -108,21 +112,20 @@ impl BySlot {
     }
 
     /// Uploads the transforms and colours that have changed; after [`Scene::sync`], in each frame in which
-    /// something has. Returns the bytes. What has no [`Drawable`] draws nothing. O(slots): a comparison
-    /// with what the device has.
+    /// something has. Returns the bytes. What has no [`Drawable`] draws nothing. O(slots), on all
+    /// cores, and a comparison with what the device has.
     ///
     /// # Errors
     /// [`Error::Device`] for more objects than the device's buffers hold.
     pub fn follow(&mut self, scene: &Scene, world: &World) -> Result<u64, Error> {
         let Self { device, queue, objects, scratch, linear, .. } = self;
         let (store, drawables) = (scene.objects_store(), world.view::<&Drawable>());
-        scratch.clear();
         scratch.resize(scene.slot_bound(), Object::zeroed());
-        for slot in store.slots() {
-            if let Some(drawable) = drawables.get(store.entity(slot)) {
-                scratch[slot as usize] = Object::new(drawable, linear);
-            }
-        }
+        scratch.par_iter_mut().with_min_len(LEAST).enumerate().for_each(|(slot, object)| {
+            // A free slot stands for no entity.
+            let drawable = drawables.get(store.entity(slot as u32));
+            *object = drawable.map_or(Object::zeroed(), |drawable| Object::new(drawable, linear));
+        });
         objects.follow(device, queue, scratch)
     }
 
