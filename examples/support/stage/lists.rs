@@ -40,7 +40,8 @@ impl Lists {
     /// What the device reports.
     pub fn read(&self, gpu: &Gpu) -> anyhow::Result<Vec<(Batch, Vec<u32>)>> {
         let known = read_all(gpu, self.draws.iter().flat_map(|draw| [&draw.instances, &draw.arguments]))?;
-        let words = |buffer: &Buffer| known.iter().find(|(known, _)| **known == *buffer).map(|(_, words)| words);
+        let words =
+            |buffer: &Buffer| known.iter().find(|(known, _)| **known == *buffer).map(|(_, words)| words);
         let slots = |draw: &Draw| {
             let (first, at) = (draw.instances_offset as usize / 4, draw.arguments_offset as usize / 4);
             let count = *words(&draw.arguments)?.get(at + 1)? as usize;

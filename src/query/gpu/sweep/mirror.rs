@@ -29,12 +29,7 @@ impl<T: Pod> Mirrored<T> {
     ///
     /// # Errors
     /// [`Error::Device`] if the device cannot bind so many.
-    pub(crate) fn follow(
-        &mut self,
-        device: &Device,
-        queue: &Queue,
-        now: &mut Vec<T>,
-    ) -> Result<u64, Error> {
+    pub(crate) fn follow(&mut self, device: &Device, queue: &Queue, now: &mut Vec<T>) -> Result<u64, Error> {
         let bytes = size_of_val(now.as_slice()) as u64;
         let most = device.limits().max_storage_buffer_binding_size;
         if bytes > most {
