@@ -50,11 +50,15 @@ fn world_normal(vertex: Vertex, instance: Instance) -> vec3<f32> {
     return vec3<f32>(dot(cross(y, z), n), dot(cross(z, x), n), dot(cross(x, y), n));
 }
 
-@vertex
-fn surface(vertex: Vertex, instance: Instance) -> Surface {
+fn surface_of(vertex: Vertex, instance: Instance) -> Surface {
     let world = world_position(vertex, instance);
     let normal = world_normal(vertex, instance);
     return Surface(clip_position(world), world, normal, instance.color.xyz);
+}
+
+@vertex
+fn surface(vertex: Vertex, instance: Instance) -> Surface {
+    return surface_of(vertex, instance);
 }
 
 // Without what only colours need.

@@ -1,19 +1,23 @@
 //! The flags that all examples share, and what they mean for the engine.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, ValueEnum};
+use clap::{Args, FromArgMatches, Parser};
 use tercet::draw::Detail;
 use tercet::geom::Viewport;
 use tercet::policy::{self, Gated, Policy};
 use tercet::tree::TreeConfig;
-use tercet::{Culler, PRESETS, Tradeoff};
+use tercet::{Culler, Tradeoff};
 
+pub use super::values::Backend;
+
+use super::help;
 use super::program::Program;
+use super::stage::{Listed, gpu_driven};
+use super::values::{key_value, scale, size};
 
 /// What the command line says.
 #[derive(Clone, Debug, Parser)]
@@ -58,8 +62,8 @@ pub struct Flags {
     #[arg(long = "static")]
     pub still: bool,
 
-    /// Open no window: fly once, then write figures and pictures. So do --oracle, --out, and a
-    /// machine without a display
+    /// Open no window: fly once, then write figures and pictures. So do --oracle, --out, --backend
+    /// gpu-driven, and a machine without a display
     #[arg(long)]
     pub headless: bool,
 
@@ -105,18 +109,6 @@ pub struct Flags {
 #[derive(Args)]
 pub struct NoMore {}
 
-/// What `--backend` takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Backend {
-    /// The GPU where there is one, and else the CPU
-    Auto,
-    /// The CPU, on all cores; needs no GPU
-    Software,
-    /// wgpu, on a CPU that plays the GPU's part if need be; WGPU_BACKEND=vulkan|gl|dx12|metal
-    /// chooses
-    Wgpu,
-}
-
 impl Flags {
     /// Reads the command line. Prints help, or what is wrong with a flag, and exits.
     pub fn parse(example: &'static str, about: &'static str) -> Self {
@@ -130,7 +122,7 @@ impl Flags {
 
     /// The same for a program that is no demo.
     pub fn parse_for<More: Args>(program: &Program) -> (Self, More) {
-        let command = command::<More>(program);
+        let command = help::command::<More>(program);
         let matches = command.clone().get_matches();
         let mut flags = Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
         let more = More::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
@@ -138,6 +130,10 @@ impl Flags {
         flags.full_detail |= program.full_detail;
         flags.gate = program.gate;
         flags.policies = program.policies;
+        if flags.backend == Backend::GpuDriven && flags.policy == "auto" {
+            flags.policy = gpu_driven::FASTEST.to_owned();
+            println!("--policy auto: {}, the fastest way for the GPU to cull by itself.", flags.policy);
+        }
         flags.has_objects = matches.value_source("objects") == Some(ValueSource::CommandLine);
         flags.has_scale = matches.value_source("scale") == Some(ValueSource::CommandLine);
         if let Err(error) = program.check(&matches).and_then(|()| flags.check()) {
@@ -146,8 +142,12 @@ impl Flags {
         (flags, more)
     }
 
-    /// The policy, its dials set; behind a gate in a demo.
+    /// The policy, its dials set; behind a gate in a demo. Where the device culls by itself, what it does
+    /// in its place.
     pub fn policy(&self) -> anyhow::Result<Box<dyn Policy>> {
+        if self.backend == Backend::GpuDriven {
+            return Ok(Box::new(Listed::new(gpu_driven::test_of(&self.policy)?)));
+        }
         let mut policy = by_name(&self.policy, self.gate)?;
         self.turn(&mut *policy)?;
         Ok(policy)
@@ -185,12 +185,12 @@ impl Flags {
             self.turn(&mut *policy)?;
             known.extend(policy.dials());
         }
+        let names = if policies.is_empty() { "the GPU".to_owned() } else { policies.join(", nor ") };
         for (key, value) in &self.dials {
             if !has(&known, key) && !is_tree_dial(key) && !is_own_dial(key) {
                 bail!(
-                    "--set {key}={value}: neither {}, nor the tree, nor the example has a dial of that name; \
-                     --help lists them",
-                    policies.join(", nor ")
+                    "--set {key}={value}: neither {names}, nor the tree, nor the example has a dial of that \
+                     name; --help lists them"
                 );
             }
         }
@@ -212,7 +212,11 @@ impl Flags {
 
     /// The tree's dials.
     pub fn tree(&self) -> anyhow::Result<TreeConfig> {
-        self.tree_from(TreeConfig::default())
+        let default = TreeConfig::default();
+        self.tree_from(match self.backend {
+            Backend::GpuDriven => gpu_driven::tree(gpu_driven::test_of(&self.policy)?, default),
+            _ => default,
+        })
     }
 
     /// The same, with other defaults.
@@ -231,7 +235,8 @@ impl Flags {
 
     /// How finely meshes are drawn.
     pub fn detail(&self) -> anyhow::Result<Detail> {
-        let default = if self.full_detail { Detail::FULL } else { Detail::default() };
+        let is_full = self.full_detail || self.backend == Backend::GpuDriven;
+        let default = if is_full { Detail::FULL } else { Detail::default() };
         Ok(self.tradeoff()?.detail(default))
     }
 
@@ -248,7 +253,8 @@ impl Flags {
 
     /// Whether figures are wanted rather than a window.
     pub fn is_headless(&self) -> bool {
-        self.headless || self.oracle || self.out.is_some() || self.record.is_some()
+        let is_driven = self.backend == Backend::GpuDriven;
+        self.headless || self.oracle || self.out.is_some() || self.record.is_some() || is_driven
     }
 
     /// The rectangle that is drawn.
@@ -263,34 +269,50 @@ impl Flags {
 
     /// Refuses what cannot be done, before a world is built.
     fn check(&self) -> anyhow::Result<()> {
-        let policies = [&[self.policy.as_str()], self.policies].concat();
-        self.check_dials(&policies)?;
+        if self.backend == Backend::GpuDriven {
+            self.check_gpu_driven()?;
+        } else {
+            self.check_dials(&[&[self.policy.as_str()], self.policies].concat())?;
+        }
         self.tree()?;
         self.detail()?;
         self.flight_end()?;
         Ok(())
     }
+
+    /// Refuses what a device that culls by itself cannot do: nobody on the host asks or is answered.
+    fn check_gpu_driven(&self) -> anyhow::Result<()> {
+        gpu_driven::test_of(&self.policy)?;
+        // The policy's own are for the host.
+        self.check_dials(&[])?;
+        if self.record.is_some() {
+            bail!("--record has no meaning with --backend gpu-driven: no question is asked, no answer comes");
+        }
+        if self.audit.is_some() {
+            bail!("--audit has no meaning with --backend gpu-driven: use --oracle, which checks every frame");
+        }
+        if self.detail()? != Detail::FULL {
+            bail!(
+                "--backend gpu-driven draws every mesh with all its triangles: max_error_px has no meaning"
+            );
+        }
+        Ok(())
+    }
 }
 
 /// A dial of the examples themselves.
-const FLIGHT_END: &str = "flight_end";
+pub(super) const FLIGHT_END: &str = "flight_end";
 
 /// A policy with its default dials.
-fn by_name(name: &str, gate: bool) -> anyhow::Result<Box<dyn Policy>> {
+pub(super) fn by_name(name: &str, gate: bool) -> anyhow::Result<Box<dyn Policy>> {
     let policy = policy::by_name(name)?;
     // This one weighs by itself whether to ask.
     let weighs = policy.name() == "auto";
     Ok(if gate && !weighs { Box::new(Gated::new(policy)) } else { policy })
 }
 
-/// The dials that a gate adds to those of a policy.
-fn gate_dials() -> Vec<tercet::Dial> {
-    let dials = |gate| by_name("dual-query", gate).map(|policy| policy.dials()).unwrap_or_default();
-    let own = dials(false);
-    dials(true).into_iter().filter(|dial| !has(&own, dial.key)).collect()
-}
-
-fn has(dials: &[tercet::Dial], key: &str) -> bool {
+/// Whether one of the dials has that name.
+pub(super) fn has(dials: &[tercet::Dial], key: &str) -> bool {
     dials.iter().any(|dial| dial.key == key)
 }
 
@@ -300,77 +322,6 @@ fn is_tree_dial(key: &str) -> bool {
 
 fn is_own_dial(key: &str) -> bool {
     key == FLIGHT_END || key == "tradeoff" || has(&Tradeoff::EXACT.dials(), key)
-}
-
-/// The command with an example's own flags. Its name and purpose come last: adding flags brings
-/// the doc comment of their type along.
-fn command<More: Args>(program: &Program) -> Command {
-    program.adapt(More::augment_args(Flags::command())).after_long_help(catalogue(program))
-}
-
-/// What stands below the flags in `--help`.
-fn catalogue(program: &Program) -> String {
-    let run = format!("cargo run --release --example {}", program.name);
-    let mut text = "Examples:\n".to_owned();
-    for (flags, effect) in program.examples {
-        let separator = if flags.is_empty() { "" } else { " -- " };
-        let _ = writeln!(text, "  {run}{separator}{flags}\n      {effect}");
-    }
-    let names = if program.takes("policy") {
-        let _ = writeln!(text, "\nPolicies: {}", policy::NAMES.join(", "));
-        policy::NAMES.to_vec()
-    } else {
-        [&[program.policy], program.policies].concat()
-    };
-    for name in names {
-        let dials = by_name(name, false).map(|policy| policy.dials()).unwrap_or_default();
-        if !dials.is_empty() {
-            list(&mut text, &format!("Dials of the policy {name}"), &dials);
-        }
-    }
-    if program.gate {
-        list(&mut text, "Dials of every policy that asks", &gate_dials());
-    }
-    list(&mut text, "Dials of the tree", &TreeConfig::default().dials());
-    let _ = writeln!(text, "  {:<24} all of them at once: paper, stable", "preset=stable");
-    list(&mut text, "Speed against accuracy", &Tradeoff::EXACT.dials());
-    let presets: Vec<_> = PRESETS.iter().map(|(name, _)| *name).collect();
-    let _ = writeln!(text, "  {:<24} all of them at once: {}", "tradeoff=exact", presets.join(", "));
-    let flight_end = tercet::Dial {
-        key: FLIGHT_END,
-        value: 1.to_string(),
-        about: "how far the camera flies, 0 to 1".to_owned(),
-        kind: tercet::DialKind::Real,
-    };
-    list(&mut text, "Dials of the example", &[flight_end]);
-    text.truncate(text.trim_end().len());
-    text
-}
-
-fn list(text: &mut String, heading: &str, dials: &[tercet::Dial]) {
-    let _ = writeln!(text, "\n{heading} (--set, with their defaults):");
-    for dial in dials {
-        let _ = writeln!(text, "  {:<24} {}", format!("{}={}", dial.key, dial.value), dial.about);
-    }
-}
-
-fn key_value(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((key, value)) if !key.is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
-        _ => Err("write it as KEY=VALUE, for instance o_split=12".to_owned()),
-    }
-}
-
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (1..=Viewport::MAX_SIDE).contains(side));
-    text.split_once(['x', 'X', '×'])
-        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
-        .ok_or_else(|| format!("write it as 1280x720, each side 1 to {}", Viewport::MAX_SIDE))
-}
-
-fn scale(text: &str) -> Result<f32, String> {
-    let scale = text.parse().ok().filter(|&scale: &f32| scale > 0.0 && scale <= 16.0);
-    scale.ok_or_else(|| "it takes a number above 0 and up to 16".to_owned())
 }
 
 #[cfg(test)]
@@ -385,7 +336,7 @@ mod tests {
 
     #[test]
     fn the_command_is_well_formed() {
-        let command = command::<NoMore>(&Program::demo("example", "What it shows."));
+        let command = help::command::<NoMore>(&Program::demo("example", "What it shows."));
         assert_eq!(command.get_about().map(ToString::to_string).as_deref(), Some("What it shows."));
         command.debug_assert();
     }
@@ -415,9 +366,26 @@ mod tests {
             "--frames 0",
             "--audit 0",
             "--objects -1",
+            "--backend gpu-driven --policy dual-query",
+            "--backend gpu-driven --policy roc --set by_geometry=false",
+            "--backend gpu-driven --policy roc --record run.tercet",
+            "--backend gpu-driven --policy roc --audit 4",
+            "--backend gpu-driven --policy roc --set max_error_px=1",
         ] {
             assert!(flags(line).is_err(), "{line} was taken");
         }
         assert!(flags("--backend software --size 1x16384 --objects 0 --static --oracle").is_ok());
+        assert!(flags("--backend gpu-driven --policy hroc --oracle").is_ok());
+    }
+
+    #[test]
+    fn a_device_that_culls_by_itself_draws_in_full_and_by_rays_has_a_fine_tree() -> anyhow::Result<()> {
+        let leaf = |line| flags(line)?.tree().map(|tree| tree.unasked_leaf);
+        let default = TreeConfig::default();
+        assert_eq!(leaf("--backend gpu-driven --policy hi-z")?, default.unasked_leaf);
+        assert_eq!(leaf("--backend gpu-driven --policy hroc")?, default.bulk_leaf);
+        assert_eq!(leaf("--backend gpu-driven --policy hroc --set unasked_leaf=9")?, 9);
+        assert_eq!(flags("--backend gpu-driven --policy roc")?.detail()?, Detail::FULL);
+        Ok(())
     }
 }

@@ -19,6 +19,7 @@ pub fn run(flags: &Flags, mut scenario: Scenario) -> anyhow::Result<()> {
     let mut eye = Culler::new(flags.policy()?);
     eye.tradeoff = flags.tradeoff()?;
     let mut stage = Stage::new(flags)?;
+    stage.dress(&mut scenario.world);
     let mut recording = Recording::new(flags, &config, &mut scene, &eye, &mut stage, &scenario.name)?;
     // Before the first frame: the tree is built at once as finely as somebody who asks wants it.
     scene.adapt([&mut eye]);

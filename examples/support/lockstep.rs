@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use tercet::draw::Detail;
 use tercet::geom::View;
 use tercet::policy::Policy;
+use tercet::query::SweepTest;
 use tercet::scene::{Scene, SceneConfig};
 use tercet::tree::{TreeConfig, TreeStats};
 use tercet::{Culler, Tradeoff};
@@ -20,13 +21,16 @@ use super::reference::Reference;
 use super::report::{FrameRecord, Setting, Summary, TreeFigures, percentile};
 use super::run::{Eye, Frame};
 use super::scenario::Scenario;
-use super::stage::Stage;
+use super::stage::{Gpu, Listed, Stage, gpu_driven};
+use super::twin::Twin;
 
 /// One way of culling: a scene, an eye and a backend of its own.
 pub struct Lane {
     scene: Scene,
     eye: Eye,
     stage: Stage,
+    /// The world, if the stage adds to it.
+    twin: Option<Twin>,
     /// Finds what a policy draws that is itself a reference.
     reference: Reference,
     records: Vec<FrameRecord>,
@@ -90,10 +94,20 @@ impl Lane {
             scene,
             eye,
             stage,
+            twin: None,
             reference: Reference::new(Painter { detail }, false),
             records: Vec::new(),
             built: TreeStats::default(),
         })
+    }
+
+    /// A lane in which the device culls by itself, by a test; for `hroc` in a fine tree.
+    ///
+    /// # Errors
+    /// Where the flags ask for less than full detail, or the device cannot do it.
+    pub fn gpu_driven(gpu: Gpu, flags: &Flags, test: SweepTest, tree: TreeConfig) -> anyhow::Result<Self> {
+        let stage = Stage::gpu_driven(gpu, test, flags.detail()?)?;
+        Self::on(stage, flags, Box::new(Listed::new(test)), gpu_driven::tree(test, tree))
     }
 
     /// The same with another way between speed and accuracy, as finely drawn as that says. The tree is
@@ -113,7 +127,16 @@ impl Lane {
     /// Runs one frame, clocked as in the demos: sync, cull with its draws, adapt. A reference finds
     /// what it is to draw outside the clock.
     fn frame(&mut self, world: &World, view: &View) -> anyhow::Result<()> {
-        let Self { scene, eye, stage, reference, .. } = self;
+        let Self { scene, eye, stage, twin, reference, .. } = self;
+        let world = match stage {
+            Stage::GpuDriven(stage) => {
+                let twin = twin.get_or_insert_with(|| Twin::new(world));
+                twin.follow(world);
+                stage.dress(&mut twin.world);
+                &twin.world
+            }
+            _ => world,
+        };
         let synced = scene.sync(world);
         reference.look(scene, world, view, eye)?;
         let drawn = stage.frame(eye, scene, world, view)?;
@@ -211,4 +234,57 @@ fn judge(
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::env;
+
+    use clap::Parser;
+    use tercet::policy;
+    use tercet::scene::Bounds;
+
+    use super::*;
+
+    /// Bunnies move, and each lane sees them: what the device drew is read back whole, and nothing is lost.
+    #[test]
+    fn lanes_in_which_the_device_culls_are_judged_as_the_others_are() -> anyhow::Result<()> {
+        let line = "example --frames 5 --size 96x54 --scale 0.03 --objects 8 --full-detail --oracle";
+        let flags = Flags::try_parse_from(line.split_whitespace())?;
+        let Some(gpu) = Gpu::open()? else {
+            let required = env::var("TERCET_REQUIRE_GPU").is_ok_and(|value| value == "1");
+            anyhow::ensure!(!required, "there is no adapter, and TERCET_REQUIRE_GPU is 1");
+            return Ok(());
+        };
+        let mut lanes = vec![Lane::new(&flags, policy::by_name("roc")?, flags.tree()?)?];
+        for test in [SweepTest::HiZ, SweepTest::Raster, SweepTest::Rays] {
+            lanes.push(Lane::gpu_driven(gpu.clone(), &flags, test, flags.tree()?)?);
+        }
+        let measured = run(Scenario::power_plant(&flags, true)?, &flags, lanes, || ())?;
+        let names: Vec<_> = measured.iter().map(|lane| lane.summary.policy.as_str()).collect();
+        assert_eq!(names, ["roc", "hi-z", "roc", "hroc"]);
+        for Measured { summary, frames } in &measured {
+            assert_eq!(summary.false_culls, Some(0), "{summary:?}");
+            for frame in frames {
+                assert_eq!(frame.wrong_pixels, Some(0), "{frame:?}");
+                assert!(frame.exact_visible.is_some_and(|exact| exact <= frame.drawn), "{frame:?}");
+            }
+        }
+        let drawn = |lane: usize| measured[lane].frames.iter().map(|frame| frame.drawn).collect::<Vec<_>>();
+        assert_eq!(drawn(2), drawn(3), "rays find what rasters find");
+        assert!(measured[2].summary.drawn.mean < measured[2].summary.in_frustum.mean);
+        assert!(measured[2].frames.iter().all(|frame| frame.drawn_triangles > u64::from(frame.drawn)));
+
+        let mut scenario = Scenario::power_plant(&flags, true)?;
+        let mut lane = Lane::gpu_driven(gpu, &flags, SweepTest::Raster, flags.tree()?)?;
+        for frame in 0..3 {
+            scenario.step();
+            lane.frame(&scenario.world, &scenario.view(frame, &flags)?)?;
+        }
+        for object in lane.scene.objects() {
+            let bounds = scenario.world.get::<&Bounds>(object.object.entity())?.0;
+            assert_eq!(object.bounds, Some(bounds), "the lane knows where everything is");
+        }
+        Ok(())
+    }
 }

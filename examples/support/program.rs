@@ -41,6 +41,10 @@ impl Program {
             ),
             ("--headless --policy frustum", "what the view frustum alone would leave to draw"),
             (
+                "--backend gpu-driven --policy roc",
+                "the GPU culls by itself: nothing is asked, nothing comes back",
+            ),
+            (
                 "--headless --policy dual-query --set gate=off",
                 "ask in every frame, even where it does not pay",
             ),

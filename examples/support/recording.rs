@@ -50,6 +50,8 @@ impl Recording {
             match stage {
                 Stage::Software(stage) => recorder.end(eye, stage.log())?,
                 Stage::Wgpu(stage) => recorder.end(eye, stage.log())?,
+                // Refused with the flags.
+                Stage::GpuDriven(_) => {}
             }
         }
         Ok(())

@@ -8,4 +8,4 @@ pub mod renderer;
 pub use detail::Detail;
 pub use drawable::Drawable;
 #[cfg(feature = "gpu")]
-pub use renderer::{Drawn, Lines, Renderer, RendererStats, Shading};
+pub use renderer::{BySlot, Drawn, Lines, Renderer, RendererStats, Shading};

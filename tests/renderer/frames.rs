@@ -78,16 +78,16 @@ fn run(
 }
 
 /// A world, and what draws it.
-struct Studio<'g> {
+pub struct Studio<'g> {
     gpu: &'g Gpu,
-    stage: Stage,
-    scene: Scene,
+    pub stage: Stage,
+    pub scene: Scene,
     queries: GpuQueries,
-    renderer: Renderer,
+    pub renderer: Renderer,
 }
 
 impl<'g> Studio<'g> {
-    fn new(gpu: &'g Gpu, model: Model, seed: u64, churn: bool) -> Self {
+    pub fn new(gpu: &'g Gpu, model: Model, seed: u64, churn: bool) -> Self {
         Self {
             gpu,
             stage: Stage::new(model, seed, SCREEN, churn),
@@ -98,7 +98,7 @@ impl<'g> Studio<'g> {
     }
 
     /// A shaded frame, and how many objects the culler drew.
-    fn frame(
+    pub fn frame(
         &mut self,
         eye: &mut Culler<Box<dyn Policy>>,
         view: &View,
@@ -117,7 +117,7 @@ impl<'g> Studio<'g> {
 
     /// The whole frame, an object at a time in a colour of its own: from first to last, and the
     /// other way round. What hides nothing is drawn after the rest, as the culler does.
-    fn owners(&mut self, view: &View) -> [Shot; 2] {
+    pub fn owners(&mut self, view: &View) -> [Shot; 2] {
         let mut objects: Vec<_> = self.scene.objects().map(|o| (o.traits.not_occluder, o.object)).collect();
         let target = Target::new(self.gpu, view);
         [false, true].map(|backward| {

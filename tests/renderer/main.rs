@@ -1,5 +1,6 @@
 //! The reference renderer, on every adapter that there is.
 
+mod by_slot;
 mod frames;
 mod looks;
 mod pixels;

@@ -1,13 +1,18 @@
 //! What answers and draws: a backend, and the renderer that goes with it.
 
 mod gpu;
+pub mod gpu_driven;
 mod inspected;
+mod listed;
+mod lists;
 mod software;
 mod watched;
 mod wgpu;
 
 pub use gpu::Gpu;
+pub use gpu_driven::GpuDrivenStage;
 pub use inspected::{Inspected, Level};
+pub use listed::Listed;
 pub use software::SoftwareStage;
 pub use watched::{Asked, Watched};
 pub use wgpu::{Picture, WgpuStage};
@@ -17,6 +22,7 @@ use hecs::World;
 use tercet::FrameStats;
 use tercet::draw::Detail;
 use tercet::geom::View;
+use tercet::query::SweepTest;
 use tercet::scene::Scene;
 
 use super::flags::{Backend, Flags};
@@ -28,6 +34,8 @@ pub enum Stage {
     Software(Box<SoftwareStage>),
     /// The GPU.
     Wgpu(Box<WgpuStage>),
+    /// The GPU, which is not asked: it culls by itself. Its eye has a [`Listed`] for a policy.
+    GpuDriven(Box<GpuDrivenStage>),
 }
 
 /// What was done for a frame.
@@ -57,16 +65,15 @@ impl Stage {
         open: impl FnOnce() -> anyhow::Result<Option<Gpu>>,
     ) -> anyhow::Result<Self> {
         let detail = flags.detail()?;
+        let found = |gpu: Option<Gpu>| {
+            let remedy = Gpu::remedy();
+            gpu.with_context(|| format!("no graphics adapter was found; {remedy}, or use --backend software"))
+        };
         match flags.backend {
             Backend::Software => Ok(Self::software(detail)),
-            Backend::Wgpu => {
-                let gpu = open()?.with_context(|| {
-                    format!(
-                        "--backend wgpu: no graphics adapter was found; {}, or use --backend software",
-                        Gpu::remedy()
-                    )
-                })?;
-                Self::on(gpu, detail)
+            Backend::Wgpu => Self::on(found(open()?)?, detail),
+            Backend::GpuDriven => {
+                Self::gpu_driven(found(open()?)?, gpu_driven::test_of(&flags.policy)?, detail)
             }
             Backend::Auto => Ok(Self::best(open(), detail)),
         }
@@ -94,11 +101,28 @@ impl Stage {
         Ok(Self::Wgpu(Box::new(WgpuStage::new(gpu, detail)?)))
     }
 
-    /// Draws as finely as this from now on.
+    /// A GPU that culls by itself, with one of the tests.
+    ///
+    /// # Errors
+    /// For any detail but the full one.
+    pub fn gpu_driven(gpu: Gpu, test: SweepTest, detail: Detail) -> anyhow::Result<Self> {
+        Ok(Self::GpuDriven(Box::new(GpuDrivenStage::new(gpu, test, detail)?)))
+    }
+
+    /// Says of new objects which mesh they are instances of, if the stage must know: before the scene is
+    /// brought in step with the world.
+    pub fn dress(&mut self, world: &mut World) {
+        if let Self::GpuDriven(stage) = self {
+            stage.dress(world);
+        }
+    }
+
+    /// Draws as finely as this from now on, if it can choose.
     pub fn set_detail(&mut self, detail: Detail) {
         match self {
             Self::Software(stage) => stage.painter.detail = detail,
             Self::Wgpu(stage) => stage.detail = detail,
+            Self::GpuDriven(_) => {}
         }
     }
 
@@ -107,6 +131,7 @@ impl Stage {
         match self {
             Self::Software(_) => "software",
             Self::Wgpu(_) => "wgpu",
+            Self::GpuDriven(_) => "gpu-driven",
         }
     }
 
@@ -115,14 +140,16 @@ impl Stage {
         match self {
             Self::Software(_) => None,
             Self::Wgpu(stage) => Some(stage.gpu().adapter()),
+            Self::GpuDriven(stage) => Some(stage.gpu().adapter()),
         }
     }
 
-    /// Whether a recorder listens to the backend.
+    /// Whether a recorder listens to the backend, if it is asked anything.
     pub fn listen(&mut self, listen: bool) {
         match self {
             Self::Software(stage) => stage.log().listen(listen),
             Self::Wgpu(stage) => stage.log().listen(listen),
+            Self::GpuDriven(_) => {}
         }
     }
 
@@ -131,6 +158,7 @@ impl Stage {
         match self {
             Self::Software(stage) => stage.queries.keep(keep),
             Self::Wgpu(stage) => stage.queries.keep(keep),
+            Self::GpuDriven(_) => {}
         }
     }
 
@@ -139,6 +167,7 @@ impl Stage {
         match self {
             Self::Software(stage) => stage.queries.asked(),
             Self::Wgpu(stage) => stage.queries.asked(),
+            Self::GpuDriven(_) => &[],
         }
     }
 
@@ -147,6 +176,7 @@ impl Stage {
         match self {
             Self::Software(stage) => stage.queries.keep_pyramid(keep),
             Self::Wgpu(stage) => stage.queries.keep_pyramid(keep),
+            Self::GpuDriven(_) => {}
         }
     }
 
@@ -155,6 +185,7 @@ impl Stage {
         match self {
             Self::Software(stage) => stage.queries.pyramid(),
             Self::Wgpu(stage) => stage.queries.pyramid(),
+            Self::GpuDriven(_) => &[],
         }
     }
 
@@ -169,6 +200,7 @@ impl Stage {
         match self {
             Self::Software(stage) => stage.frame(eye, scene, world, view),
             Self::Wgpu(stage) => stage.frame(eye, scene, world, view),
+            Self::GpuDriven(stage) => stage.frame(eye, scene, world, view),
         }
     }
 }

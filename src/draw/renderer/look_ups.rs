@@ -6,10 +6,10 @@
 
 use wgpu::{
     AddressMode, BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor,
-    BindGroupLayoutEntry, BindingResource, BindingType, Device, Extent3d, FilterMode, Origin3d,
-    PipelineLayout, PipelineLayoutDescriptor, Queue, SamplerBindingType, SamplerDescriptor, ShaderStages,
-    TexelCopyBufferLayout, TexelCopyTextureInfo, TextureAspect, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureSampleType, TextureUsages, TextureViewDescriptor, TextureViewDimension,
+    BindGroupLayoutEntry, BindingResource, BindingType, Device, Extent3d, FilterMode, Origin3d, Queue,
+    SamplerBindingType, SamplerDescriptor, ShaderStages, TexelCopyBufferLayout, TexelCopyTextureInfo,
+    TextureAspect, TextureDescriptor, TextureDimension, TextureFormat, TextureSampleType, TextureUsages,
+    TextureViewDescriptor, TextureViewDimension,
 };
 
 /// Texels a side: 1 MiB in all, as much as a GPU's caches just hold.
@@ -18,13 +18,12 @@ const SIDE: u32 = 512;
 /// The texture, as group 1 of a pipeline.
 #[derive(Debug)]
 pub(super) struct LookUps {
-    pub(super) layout: PipelineLayout,
+    pub(super) layout: BindGroupLayout,
     pub(super) bindings: BindGroup,
 }
 
 impl LookUps {
-    /// `camera` is the layout of group 0.
-    pub(super) fn new(device: &Device, queue: &Queue, camera: &BindGroupLayout) -> Self {
+    pub(super) fn new(device: &Device, queue: &Queue) -> Self {
         let label = Some("tercet look-ups");
         let entry = |binding, ty| BindGroupLayoutEntry {
             binding,
@@ -38,14 +37,9 @@ impl LookUps {
             multisampled: false,
         };
         let sampler = BindingType::Sampler(SamplerBindingType::Filtering);
-        let group = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        let layout = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
             label,
             entries: &[entry(0, texture), entry(1, sampler)],
-        });
-        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(camera), Some(&group)],
-            immediate_size: 0,
         });
         let sampler = device.create_sampler(&SamplerDescriptor {
             label,
@@ -57,7 +51,7 @@ impl LookUps {
         });
         let bindings = device.create_bind_group(&BindGroupDescriptor {
             label,
-            layout: &group,
+            layout: &layout,
             entries: &[
                 BindGroupEntry { binding: 0, resource: BindingResource::TextureView(&upload(device, queue)) },
                 BindGroupEntry { binding: 1, resource: BindingResource::Sampler(&sampler) },

@@ -43,29 +43,34 @@
 //! |---|---|
 //! | `batch` | the objects of one call, put together by mesh and level |
 //! | `arena` | room on the device for what one frame draws |
+//! | `by_slot` | all objects on the device, for frames that it culls by itself |
 //! | `geometry`, `normals` | meshes on the device |
 //! | `camera` | the view as the shaders read it |
-//! | `pipelines` | made when first needed |
+//! | `colors` | of objects, and formats of targets |
+//! | `pipelines`, `vertices` | made when first needed, and what they read |
 //! | `look_ups` | a texture, where shading is to be dear |
 //! | `overlays` | boxes and polygons over a frame |
 
 mod arena;
 mod batch;
+mod by_slot;
 mod camera;
+mod colors;
 mod geometry;
 mod look_ups;
 mod normals;
 mod overlays;
 mod pipelines;
+mod vertices;
 
-use std::ops::{AddAssign, Range};
+use std::ops::AddAssign;
 
 use bytemuck::{bytes_of, cast_slice};
 use wgpu::{
     BindGroup, Buffer, BufferDescriptor, BufferUsages, Device, IndexFormat, Queue, RenderPass, TextureFormat,
-    TextureFormatFeatureFlags, TextureUsages,
 };
 
+pub use by_slot::BySlot;
 pub use overlays::Lines;
 
 use super::{Detail, Drawable};
@@ -76,8 +81,9 @@ use crate::scene::mesh::Mesh;
 use arena::Arena;
 use batch::{Batch, Instance, Sorted};
 use camera::PackedCamera;
+use colors::{check, linear, takes_linear, tinted};
 use geometry::Geometry;
-use pipelines::{Kind, Pipelines};
+use pipelines::{Kind, Pipelines, Source};
 
 /// How surfaces look. Without a colour target there is only depth, whatever is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -324,18 +330,9 @@ impl Renderer {
             drawn.triangles += triangles * run.instances.len() as u64;
         }
         pass.set_bind_group(0, &self.bindings, &[]);
-        let kinds: &[Kind] = match (frame.shading, self.color) {
-            (_, None) => &[Kind::Depth],
-            (Shading::Lit, _) if self.look_ups > 0 => &[Kind::LookUps(self.look_ups)],
-            (Shading::Lit, _) => &[Kind::Lit],
-            (Shading::Unlit, _) => &[Kind::Unlit],
-            (Shading::Overdraw, _) => &[Kind::Depth, Kind::Layers],
-        };
-        for &kind in kinds.iter().chain(self.has_ids.then_some(&Kind::Ids)) {
-            if let Kind::LookUps(_) = kind {
-                pass.set_bind_group(1, self.pipelines.look_ups(&self.device, &self.queue), &[]);
-            }
-            pass.set_pipeline(self.pipelines.get(&self.device, kind, &frame.view));
+        let kinds = kinds(frame.shading, self.color.is_some(), self.look_ups);
+        for kind in kinds.chain(self.has_ids.then_some(Kind::Ids)) {
+            self.pipelines.set(pass, (&self.device, &self.queue), kind, Source::Instances, &frame.view);
             for run in runs {
                 let group = self.geometry.group(run.group);
                 // The instances' buffer is moved to the first one, since a first instance other
@@ -354,24 +351,6 @@ impl Renderer {
         }
         drawn
     }
-
-    /// Draws something of one vertex buffer over the frame.
-    fn draw_overlay(
-        &mut self,
-        pass: &mut RenderPass<'static>,
-        kind: Kind,
-        bytes: &[u8],
-        vertices: Range<u32>,
-        instances: Range<u32>,
-    ) {
-        let (Some(frame), Some(_), false) = (&self.frame, self.color, bytes.is_empty()) else { return };
-        let (buffer, offset) = self.arena.write(&self.device, &self.queue, bytes);
-        self.uploaded += bytes.len() as u64;
-        pass.set_pipeline(self.pipelines.get(&self.device, kind, &frame.view));
-        pass.set_bind_group(0, &self.bindings, &[]);
-        pass.set_vertex_buffer(0, buffer.slice(offset..));
-        pass.draw(vertices, instances);
-    }
 }
 
 impl AddAssign for Drawn {
@@ -382,36 +361,14 @@ impl AddAssign for Drawn {
     }
 }
 
-/// A colour with another laid over it.
-fn tinted(color: [u8; 3], [r, g, b, alpha]: [u8; 4]) -> [u8; 3] {
-    let alpha = u32::from(alpha);
-    let mix = |own: u8, over: u8| (u32::from(own) * (255 - alpha) + u32::from(over) * alpha + 127) / 255;
-    [mix(color[0], r) as u8, mix(color[1], g) as u8, mix(color[2], b) as u8]
-}
-
-/// The linear fraction of 65535 that an sRGB byte stands for.
-fn linear(byte: usize) -> u16 {
-    let c = byte as f64 / 255.0;
-    let linear = if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
-    (linear * 65535.0).round() as u16
-}
-
-/// Whether a format takes linear colours: encodes them itself, or has the range for them.
-fn takes_linear(format: TextureFormat) -> bool {
-    use TextureFormat::{Rg11b10Ufloat, Rgba16Float, Rgba32Float};
-    format.is_srgb() || matches!(format, Rg11b10Ufloat | Rgba16Float | Rgba32Float)
-}
-
-fn check(format: TextureFormat, device: &Device) -> Result<(), Error> {
-    let unusable = |why| Err(Error::Target { why: format!("{format:?} {why}: use Rgba8UnormSrgb") });
-    if !format.has_color_aspect() || format.components() < 3 {
-        return unusable("is no colour of at least three channels");
-    }
-    let features = format.guaranteed_format_features(device.features());
-    if !features.allowed_usages.contains(TextureUsages::RENDER_ATTACHMENT)
-        || !features.flags.contains(TextureFormatFeatureFlags::BLENDABLE)
-    {
-        return unusable("cannot be drawn to and blended on this device");
-    }
-    Ok(())
+/// What surfaces are drawn with, one after the other.
+fn kinds(shading: Shading, has_color: bool, look_ups: u32) -> impl Iterator<Item = Kind> {
+    let (first, second) = match shading {
+        _ if !has_color => (Kind::Depth, None),
+        Shading::Lit if look_ups > 0 => (Kind::LookUps(look_ups), None),
+        Shading::Lit => (Kind::Lit, None),
+        Shading::Unlit => (Kind::Unlit, None),
+        Shading::Overdraw => (Kind::Depth, Some(Kind::Layers)),
+    };
+    std::iter::once(first).chain(second)
 }

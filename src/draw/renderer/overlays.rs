@@ -1,10 +1,12 @@
 //! What lies over a frame: the edges of boxes, and polygons on the screen.
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable, cast_slice};
 use wgpu::RenderPass;
 
 use super::Renderer;
-use super::pipelines::Kind;
+use super::pipelines::{Kind, Source};
 use crate::geom::{Aabb, ScreenOutline};
 
 /// What hides the edges of boxes.
@@ -70,5 +72,23 @@ impl Renderer {
         for (kind, corners) in [(Kind::Polygons, polygons), (Kind::Borders, borders)] {
             self.draw_overlay(pass, kind, cast_slice(&corners), 0..corners.len() as u32, 0..1);
         }
+    }
+
+    /// Draws something of one vertex buffer over the frame.
+    fn draw_overlay(
+        &mut self,
+        pass: &mut RenderPass<'static>,
+        kind: Kind,
+        bytes: &[u8],
+        vertices: Range<u32>,
+        instances: Range<u32>,
+    ) {
+        let (Some(frame), Some(_), false) = (&self.frame, self.color, bytes.is_empty()) else { return };
+        let (buffer, offset) = self.arena.write(&self.device, &self.queue, bytes);
+        self.uploaded += bytes.len() as u64;
+        self.pipelines.set(pass, (&self.device, &self.queue), kind, Source::Instances, &frame.view);
+        pass.set_bind_group(0, &self.bindings, &[]);
+        pass.set_vertex_buffer(0, buffer.slice(offset..));
+        pass.draw(vertices, instances);
     }
 }

@@ -1,23 +1,20 @@
 //! The pipelines, made when they are first needed.
 
 use std::collections::HashMap;
-use std::mem::offset_of;
 
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor,
-    BindGroupLayoutEntry, BindingType, BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer,
-    BufferBindingType, ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device,
-    FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor,
-    PrimitiveState, PrimitiveTopology, Queue, RenderPipeline, RenderPipelineDescriptor, ShaderModule,
-    ShaderModuleDescriptor, ShaderSource, ShaderStages, TextureFormat, VertexAttribute, VertexBufferLayout,
-    VertexFormat, VertexState, VertexStepMode,
+    BindGroupLayoutEntry, BindingResource, BindingType, BlendComponent, BlendFactor, BlendOperation,
+    BlendState, Buffer, BufferBinding, BufferBindingType, ColorTargetState, ColorWrites, CompareFunction,
+    DepthStencilState, Device, FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayout,
+    PipelineLayoutDescriptor, PrimitiveState, PrimitiveTopology, Queue, RenderPass, RenderPipeline,
+    RenderPipelineDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages,
+    TextureFormat, VertexBufferLayout, VertexState,
 };
 
 use super::Renderer;
-use super::batch::Instance;
 use super::look_ups::LookUps;
-use super::normals::Vertex;
-use super::overlays::{BoxEdges, Corner};
+use super::vertices::{BOXES, CORNERS, IDS, INSTANCES, SLOTS, VERTICES};
 use crate::geom::{DepthDirection, DepthFormat, View};
 
 /// The shaders' sources: surfaces, and what lies over them. WGSL has no includes: the parts are put
@@ -25,7 +22,8 @@ use crate::geom::{DepthDirection, DepthFormat, View};
 pub(super) const SOURCES: [&str; 2] = [
     concat!(
         include_str!("../../../shaders/shared/camera.wgsl"),
-        include_str!("../../../shaders/surfaces.wgsl")
+        include_str!("../../../shaders/surfaces.wgsl"),
+        include_str!("../../../shaders/by_slot.wgsl")
     ),
     concat!(
         include_str!("../../../shaders/shared/camera.wgsl"),
@@ -58,10 +56,20 @@ pub(super) enum Kind {
     Borders,
 }
 
+/// Where the transform and the colour of a surface's instance are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Source {
+    /// In a vertex buffer, of what one call draws.
+    Instances,
+    /// In a storage buffer, of all objects by slot; the vertex buffer has slots.
+    Slots,
+}
+
 /// What else it depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Key {
     kind: Kind,
+    source: Source,
     is_reversed: bool,
     is_float: bool,
     samples: u32,
@@ -72,8 +80,10 @@ pub(super) struct Pipelines {
     color: Option<TextureFormat>,
     has_ids: bool,
     modules: [ShaderModule; 2],
-    bindings: BindGroupLayout,
-    layout: PipelineLayout,
+    camera: BindGroupLayout,
+    /// The same with objects by slot. Made when first needed: not every device has storage buffers in
+    /// vertex shaders.
+    by_slot: Option<BindGroupLayout>,
     /// Made when they are first needed, too.
     look_ups: Option<LookUps>,
     made: HashMap<Key, RenderPipeline>,
@@ -87,57 +97,99 @@ impl Pipelines {
                 source: ShaderSource::Wgsl(source.into()),
             })
         });
-        let camera = BindGroupLayoutEntry {
-            binding: 0,
-            visibility: ShaderStages::VERTEX_FRAGMENT,
-            ty: BindingType::Buffer {
-                ty: BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
-        let label = Some("tercet camera");
-        let bindings =
-            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label, entries: &[camera] });
-        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some("tercet renderer"),
-            bind_group_layouts: &[Some(&bindings)],
-            immediate_size: 0,
-        });
-        Self { color, has_ids, modules, bindings, layout, look_ups: None, made: HashMap::new() }
+        let camera = group_layout(device, &[CAMERA]);
+        Self { color, has_ids, modules, camera, by_slot: None, look_ups: None, made: HashMap::new() }
     }
 
-    /// Binds the uniforms.
+    /// Binds the uniforms, for [`Source::Instances`].
     pub(super) fn bind(&self, device: &Device, uniforms: &Buffer) -> BindGroup {
-        device.create_bind_group(&BindGroupDescriptor {
-            label: Some("tercet camera"),
-            layout: &self.bindings,
-            entries: &[BindGroupEntry { binding: 0, resource: uniforms.as_entire_binding() }],
-        })
+        bind(device, &self.camera, [uniforms.as_entire_binding()])
     }
 
-    /// What [`Kind::LookUps`] reads, bound as group 1.
-    pub(super) fn look_ups(&mut self, device: &Device, queue: &Queue) -> &BindGroup {
-        let Self { look_ups, bindings, .. } = self;
-        &look_ups.get_or_insert_with(|| LookUps::new(device, queue, bindings)).bindings
+    /// Binds them with all objects, for [`Source::Slots`].
+    pub(super) fn bind_by_slot(
+        &mut self,
+        device: &Device,
+        uniforms: &Buffer,
+        objects: BufferBinding<'_>,
+    ) -> BindGroup {
+        let layout = layout_by_slot(&mut self.by_slot, device);
+        bind(device, layout, [uniforms.as_entire_binding(), BindingResource::Buffer(objects)])
     }
 
-    /// The pipeline for a view's target. [`Pipelines::look_ups`] comes before one that reads them.
-    pub(super) fn get(&mut self, device: &Device, kind: Kind, view: &View) -> &RenderPipeline {
+    /// Sets the pipeline for a view's target, and what it reads beside group 0.
+    pub(super) fn set(
+        &mut self,
+        pass: &mut RenderPass<'static>,
+        (device, queue): (&Device, &Queue),
+        kind: Kind,
+        source: Source,
+        view: &View,
+    ) {
         let key = Key {
             kind,
+            source,
             is_reversed: view.depth() == DepthDirection::Reversed,
             is_float: view.format() == DepthFormat::Depth32Float,
             samples: view.samples(),
         };
-        let Self { color, has_ids, modules, layout, look_ups, made, .. } = self;
-        let layout = match (kind, look_ups) {
-            (Kind::LookUps(_), Some(look_ups)) => &look_ups.layout,
-            _ => layout,
+        let Self { color, has_ids, modules, camera, by_slot, look_ups, made } = self;
+        let look_ups = match kind {
+            Kind::LookUps(_) => Some(&*look_ups.get_or_insert_with(|| LookUps::new(device, queue))),
+            _ => None,
         };
-        made.entry(key).or_insert_with(|| key.make(device, modules, layout, (*color, *has_ids)))
+        if let Some(look_ups) = look_ups {
+            pass.set_bind_group(1, &look_ups.bindings, &[]);
+        }
+        let pipeline = made.entry(key).or_insert_with(|| {
+            let first = match source {
+                Source::Instances => &*camera,
+                Source::Slots => layout_by_slot(by_slot, device),
+            };
+            let groups: Vec<_> =
+                std::iter::once(Some(first)).chain(look_ups.map(|it| Some(&it.layout))).collect();
+            let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+                label: Some("tercet renderer"),
+                bind_group_layouts: &groups,
+                immediate_size: 0,
+            });
+            key.make(device, modules, &layout, (*color, *has_ids))
+        });
+        pass.set_pipeline(pipeline);
     }
+}
+
+const CAMERA: (ShaderStages, BufferBindingType) = (ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform);
+const OBJECTS: (ShaderStages, BufferBindingType) =
+    (ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true });
+
+fn layout_by_slot<'a>(layout: &'a mut Option<BindGroupLayout>, device: &Device) -> &'a BindGroupLayout {
+    layout.get_or_insert_with(|| group_layout(device, &[CAMERA, OBJECTS]))
+}
+
+/// A group of buffers, from binding 0 on.
+fn group_layout(device: &Device, buffers: &[(ShaderStages, BufferBindingType)]) -> BindGroupLayout {
+    let entry = |(binding, &(visibility, ty))| BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    };
+    let entries: Vec<_> = (0..).zip(buffers).map(entry).collect();
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        label: Some("tercet camera"),
+        entries: &entries,
+    })
+}
+
+fn bind<const N: usize>(
+    device: &Device,
+    layout: &BindGroupLayout,
+    resources: [BindingResource<'_>; N],
+) -> BindGroup {
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
+    device.create_bind_group(&BindGroupDescriptor { label: Some("tercet camera"), layout, entries: &entries })
 }
 
 impl Key {
@@ -148,7 +200,7 @@ impl Key {
         layout: &PipelineLayout,
         (color, has_ids): (Option<TextureFormat>, bool),
     ) -> RenderPipeline {
-        let Recipe { stages, buffers, topology, blend, draws_color, depth } = self.kind.recipe();
+        let Recipe { stages, buffers, topology, blend, draws_color, depth } = self.kind.recipe(self.source);
         let constants: Vec<(&str, f64)> = match self.kind {
             Kind::LookUps(count) => vec![("look_ups", count.into())],
             _ => Vec::new(),
@@ -220,10 +272,11 @@ impl Kind {
         !matches!(self, Self::Edges | Self::XRayEdges | Self::Polygons | Self::Borders)
     }
 
-    fn recipe(self) -> Recipe {
-        let surfaces = |stages| Recipe {
-            stages,
-            buffers: vec![VERTICES, INSTANCES],
+    fn recipe(self, source: Source) -> Recipe {
+        let of_slots = source == Source::Slots;
+        let surfaces = |vertex: [&'static str; 2], fragment| Recipe {
+            stages: [vertex[usize::from(of_slots)], fragment],
+            buffers: vec![VERTICES, if of_slots { SLOTS } else { INSTANCES }],
             topology: PrimitiveTopology::TriangleList,
             blend: None,
             draws_color: true,
@@ -240,19 +293,18 @@ impl Kind {
         let edges = |depth| overlays("box_edge", BOXES, PrimitiveTopology::LineList, depth);
         let on_screen = |topology| overlays("corner", CORNERS, topology, Depth::Ignored);
         match self {
-            Self::Lit => surfaces(["surface", "lit"]),
-            Self::LookUps(_) => surfaces(["surface", "lit_by_look_ups"]),
-            Self::Unlit => surfaces(["surface", "unlit"]),
-            Self::Depth => Recipe { draws_color: false, ..surfaces(["place", "nothing"]) },
+            Self::Lit => surfaces(SURFACE, "lit"),
+            Self::LookUps(_) => surfaces(SURFACE, "lit_by_look_ups"),
+            Self::Unlit => surfaces(SURFACE, "unlit"),
+            Self::Depth => Recipe { draws_color: false, ..surfaces(PLACE, "nothing") },
             Self::Ids => Recipe {
+                stages: ["identified", "owner"],
                 buffers: vec![VERTICES, INSTANCES, IDS],
                 draws_color: false,
                 depth: Depth::Tested,
-                ..surfaces(["identified", "owner"])
+                ..surfaces(PLACE, "owner")
             },
-            Self::Layers => {
-                Recipe { blend: Some(ADDED), depth: Depth::Ignored, ..surfaces(["place", "layer"]) }
-            }
+            Self::Layers => Recipe { blend: Some(ADDED), depth: Depth::Ignored, ..surfaces(PLACE, "layer") },
             Self::Edges => edges(Depth::Tested),
             Self::XRayEdges => edges(Depth::Ignored),
             Self::Polygons => on_screen(PrimitiveTopology::TriangleList),
@@ -260,6 +312,10 @@ impl Kind {
         }
     }
 }
+
+/// Vertex stages, by [`Source`].
+const SURFACE: [&str; 2] = ["surface", "surface_by_slot"];
+const PLACE: [&str; 2] = ["place", "place_by_slot"];
 
 const ADDED: BlendState = {
     let sum = BlendComponent {
@@ -269,55 +325,6 @@ const ADDED: BlendState = {
     };
     BlendState { color: sum, alpha: sum }
 };
-
-const VERTICES: VertexBufferLayout<'_> = VertexBufferLayout {
-    array_stride: size_of::<Vertex>() as u64,
-    step_mode: VertexStepMode::Vertex,
-    attributes: &[
-        attribute(0, VertexFormat::Float32x3, offset_of!(Vertex, position)),
-        attribute(1, VertexFormat::Snorm16x4, offset_of!(Vertex, normal)),
-    ],
-};
-
-const INSTANCES: VertexBufferLayout<'_> = VertexBufferLayout {
-    array_stride: size_of::<Instance>() as u64,
-    step_mode: VertexStepMode::Instance,
-    attributes: &[
-        attribute(2, VertexFormat::Float32x4, offset_of!(Instance, rows)),
-        attribute(3, VertexFormat::Float32x4, offset_of!(Instance, rows) + 16),
-        attribute(4, VertexFormat::Float32x4, offset_of!(Instance, rows) + 32),
-        attribute(5, VertexFormat::Unorm16x4, offset_of!(Instance, color)),
-    ],
-};
-
-const IDS: VertexBufferLayout<'_> = VertexBufferLayout {
-    array_stride: size_of::<u32>() as u64,
-    step_mode: VertexStepMode::Instance,
-    attributes: &[attribute(6, VertexFormat::Uint32, 0)],
-};
-
-const BOXES: VertexBufferLayout<'_> = VertexBufferLayout {
-    array_stride: size_of::<BoxEdges>() as u64,
-    step_mode: VertexStepMode::Instance,
-    attributes: &[
-        attribute(0, VertexFormat::Float32x3, offset_of!(BoxEdges, low)),
-        attribute(1, VertexFormat::Float32x3, offset_of!(BoxEdges, high)),
-        attribute(2, VertexFormat::Unorm8x4, offset_of!(BoxEdges, color)),
-    ],
-};
-
-const CORNERS: VertexBufferLayout<'_> = VertexBufferLayout {
-    array_stride: size_of::<Corner>() as u64,
-    step_mode: VertexStepMode::Vertex,
-    attributes: &[
-        attribute(0, VertexFormat::Float32x2, offset_of!(Corner, pixel)),
-        attribute(1, VertexFormat::Unorm8x4, offset_of!(Corner, color)),
-    ],
-};
-
-const fn attribute(shader_location: u32, format: VertexFormat, offset: usize) -> VertexAttribute {
-    VertexAttribute { format, offset: offset as u64, shader_location }
-}
 
 #[cfg(test)]
 mod tests {
@@ -371,7 +378,9 @@ mod tests {
                 written.unwrap_or_else(|error| panic!("{}: {error}", entry.name));
             }
             let wanted = KINDS.iter().filter(|kind| kind.is_surface() == of_surfaces);
-            let wanted: Vec<_> = wanted.flat_map(|kind| kind.recipe().stages).collect();
+            let both = [Source::Instances, Source::Slots];
+            let wanted = wanted.flat_map(|kind| both.map(|source| kind.recipe(source).stages));
+            let wanted: Vec<_> = wanted.flatten().collect();
             let exists = |name: &str, stage| {
                 module.entry_points.iter().any(|entry| entry.name == name && entry.stage == stage)
             };

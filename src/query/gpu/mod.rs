@@ -97,6 +97,7 @@ pub use indirect::{BatchMesh, IndirectBatch, IndirectConfig, IndirectCuller, Ind
 pub use shaders::{Shader, Shaders};
 pub use stats::GpuStats;
 pub use sweep::Level;
+pub(crate) use sweep::mirror::Mirrored;
 pub use targets::{ColorTarget, DepthTarget, FrameTargets};
 
 use super::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};

@@ -11,21 +11,25 @@
 //! remembered only decides what is drawn first. (Lee et al. 2021 test against the same depth; there, as
 //! here, an object that is tested hides itself from no one.)
 //!
-//! The app says what each [`Batch`] draws, and gets for each a buffer of object slots, as instances,
-//! with the arguments of an indirect draw: one draw a mesh, in the same order of objects from frame to
-//! frame. No optional feature is needed: no first instance, no count.
+//! The app says what each [`Batch`](crate::scene::Batch) draws, and gets for each a buffer of object
+//! slots, as instances, with the arguments of an indirect draw: one draw a mesh, in the same order of
+//! objects from frame to frame. [`draw::BySlot`](crate::draw::BySlot) is what the reference renderer draws
+//! them from. No optional feature is needed: no first instance, no count.
 //!
 //! By [`SweepTest::Rays`] objects are tested as HROC does: what was drawn first tells which subtrees hold
 //! none of it, and rays go down these. The same are found as by [`SweepTest::Raster`].
 //!
 //! | file | |
 //! |---|---|
+//! | `config`, `draws` | dials, and what the app draws |
 //! | `groups` | occludee groups, and rays |
 //! | `order` | objects by mesh, and meshes by batch |
 //! | `select` | which objects a list holds: a prefix sum |
 //! | `compact` | instances and arguments |
 
 mod compact;
+mod config;
+mod draws;
 mod groups;
 mod order;
 mod select;
@@ -33,12 +37,14 @@ mod select;
 use bytemuck::bytes_of;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, Queue, RenderPass, TextureView};
 
+pub use config::IndirectConfig;
+pub use draws::{BatchMesh, IndirectBatch};
+
 use super::clock::Tape;
 use super::counter::compiled;
 use super::guard::guarded;
 use super::pack::{EMULATED_RANGE, PackedFrame};
 use super::read_back::{ReadBack, State};
-use super::shaders::Shaders;
 use super::sweep::asked::{Asked, exactly};
 use super::sweep::boxes::{self, PackedBox};
 use super::sweep::mirror::Mirrored;
@@ -48,53 +54,11 @@ use super::targets::{FrameTargets, Kind};
 use crate::Error;
 use crate::geom::View;
 use crate::query::SweepTest;
-use crate::scene::{Batch, Scene};
+use crate::scene::Scene;
 use compact::{ARGUMENTS, Compact, List, Parts};
 use groups::Groups;
 use order::Order;
 use select::{Select, Source, Which};
-
-/// What the objects of a [`Batch`] draw: a part of the app's index and vertex buffers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct BatchMesh {
-    /// Indices.
-    pub index_count: u32,
-    /// The first of them in the index buffer.
-    pub first_index: u32,
-    /// Added to each.
-    pub base_vertex: i32,
-}
-
-/// The dials of an [`IndirectCuller`].
-#[derive(Clone, Debug)]
-pub struct IndirectConfig {
-    /// How objects are tested. [`SweepTest::HiZ`] is the fastest, and calls some of the hidden ones
-    /// visible; [`SweepTest::Raster`] draws the proxies, which is exact; [`SweepTest::Rays`] those of
-    /// groups, which finds the same. Groups are nodes of the tree: it should be a fine one from the
-    /// beginning ([`TreeConfig::unasked_leaf`](crate::tree::TreeConfig::unasked_leaf)).
-    /// [`SweepTest::Owners`] is no test of objects that are not drawn yet: it is taken for `Raster`.
-    pub test: SweepTest,
-    /// By rays, a group that covers more of the screen is opened; 1 opens only what may hold the eye.
-    pub share: f32,
-    /// Whether the counters of [`IndirectStats`] come back, some frames late. Nothing waits for them.
-    pub counters: bool,
-    /// See [`GpuConfig::depth_slack`](super::GpuConfig::depth_slack).
-    pub depth_slack: Option<f32>,
-    /// The sources of the passes.
-    pub shaders: Shaders,
-}
-
-impl Default for IndirectConfig {
-    fn default() -> Self {
-        Self {
-            test: SweepTest::HiZ,
-            share: 0.25,
-            counters: false,
-            depth_slack: None,
-            shaders: Shaders::default(),
-        }
-    }
-}
 
 /// What a frame came to, as far as the host knows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -108,30 +72,6 @@ pub struct IndirectStats {
     pub drawn: Option<[u32; 3]>,
     /// The same of what was tested by rays: groups, and objects by themselves.
     pub tested: Option<[u32; 2]>,
-}
-
-/// One indirect draw: the objects of a batch that a list holds.
-#[derive(Clone, Copy, Debug)]
-pub struct IndirectBatch<'a> {
-    /// Whose objects they are.
-    pub batch: Batch,
-    /// Slots of objects ([`ObjectId::slot`](crate::scene::ObjectId::slot)), a `u32` an instance: the
-    /// app looks up by them where things stand.
-    pub instances: &'a Buffer,
-    /// Where this batch's begin, in bytes.
-    pub instances_offset: u64,
-    /// The arguments of a `draw_indexed_indirect`.
-    pub arguments: &'a Buffer,
-    /// Where this batch's are, in bytes.
-    pub arguments_offset: u64,
-}
-
-impl IndirectBatch<'_> {
-    /// Binds the slots as a vertex buffer, and draws. Everything else is the app's to set before.
-    pub fn draw(&self, pass: &mut RenderPass<'static>, vertex_buffer: u32) {
-        pass.set_vertex_buffer(vertex_buffer, self.instances.slice(self.instances_offset..));
-        pass.draw_indexed_indirect(self.arguments, self.arguments_offset);
-    }
 }
 
 /// A view that the device culls: passes, buffers, and what was visible in the last frame.
@@ -227,7 +167,7 @@ impl IndirectCuller {
     /// `draw` is called two or three times, each for a pass of its own on the targets: no state
     /// survives from one call to the next. Each call gets the same batches, in the order of their
     /// numbers, with other objects. Objects that are no occluders come in the last call. `meshes` says
-    /// what each [`Batch`] draws, by its number.
+    /// what each [`Batch`](crate::scene::Batch) draws, by its number.
     ///
     /// The commands must be submitted before the next frame of this view is recorded. Nothing is
     /// submitted here, and nothing is waited for. O(slots) on the host: a comparison with what the

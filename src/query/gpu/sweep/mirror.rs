@@ -10,7 +10,7 @@ use crate::Error;
 /// by chunk. So nothing has to be reported by whoever changes the array, and nothing can be missed.
 /// An array that stays as it is costs a comparison at the speed of memory, and no upload.
 #[derive(Debug)]
-pub(in crate::query::gpu) struct Mirrored<T> {
+pub(crate) struct Mirrored<T> {
     known: Vec<T>,
     array: DeviceArray<T>,
 }
@@ -19,7 +19,7 @@ pub(in crate::query::gpu) struct Mirrored<T> {
 const CHUNK: usize = 32;
 
 impl<T: Pod> Mirrored<T> {
-    pub(in crate::query::gpu) fn new(device: &Device, label: &'static str) -> Self {
+    pub(crate) fn new(device: &Device, label: &'static str) -> Self {
         let usage = BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_DST;
         Self { known: Vec::new(), array: DeviceArray::new(device, label, usage) }
     }
@@ -29,12 +29,7 @@ impl<T: Pod> Mirrored<T> {
     ///
     /// # Errors
     /// [`Error::Device`] if the device cannot bind so many.
-    pub(in crate::query::gpu) fn follow(
-        &mut self,
-        device: &Device,
-        queue: &Queue,
-        now: &mut Vec<T>,
-    ) -> Result<u64, Error> {
+    pub(crate) fn follow(&mut self, device: &Device, queue: &Queue, now: &mut Vec<T>) -> Result<u64, Error> {
         if self.array.resize(device, now.len())? {
             self.known.clear();
         }
@@ -49,17 +44,17 @@ impl<T: Pod> Mirrored<T> {
     }
 
     /// The array as the device has it.
-    pub(in crate::query::gpu) fn known(&self) -> &[T] {
+    pub(crate) fn known(&self) -> &[T] {
         &self.known
     }
 
     /// How many elements there are.
-    pub(in crate::query::gpu) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.known.len()
     }
 
     /// All elements, and no more; one if there is none.
-    pub(in crate::query::gpu) fn binding(&self) -> BufferBinding<'_> {
+    pub(crate) fn binding(&self) -> BufferBinding<'_> {
         self.array.all()
     }
 }
