@@ -22,5 +22,6 @@ pub mod run;
 pub mod scenario;
 pub mod stage;
 pub mod table;
+pub mod ticks;
 pub mod top_view;
 pub mod window;
