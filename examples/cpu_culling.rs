@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! cargo run --release --example cpu_culling
+//! cargo run --release --example cpu_culling -- --help
 //! ```
 //!
 //! The app gives the engine a box for each thing, and for things that hide others a simple mesh
@@ -10,6 +11,7 @@
 
 use std::collections::HashSet;
 
+use clap::Parser;
 use glam::{Affine3A, Quat, Vec3};
 use hecs::World;
 use tercet::geom::{Aabb, View, Viewport};
@@ -30,9 +32,28 @@ struct Speed(f32);
 const BLOCKS: u32 = 40;
 const BLOCK: f32 = 30.0;
 const CAR: Vec3 = Vec3::new(0.9, 0.7, 2.2);
-const FRAMES: u32 = 600;
+
+/// Culls a drive through a town on the CPU, for an app that draws elsewhere, and prints what its renderer
+/// is told
+#[derive(Parser)]
+#[command(after_long_help = "\
+Examples:
+  cargo run --release --example cpu_culling
+      a line every 50 frames
+  cargo run --release --example cpu_culling -- --every 1 --frames 60
+      the same way in a tenth of the frames, and a line for each")]
+struct Arguments {
+    /// How many frames the drive is cut into
+    #[arg(long, value_name = "N", default_value = "600", value_parser = clap::value_parser!(u32).range(1..))]
+    frames: u32,
+
+    /// Print what the renderer is told in every N-th frame
+    #[arg(long, value_name = "N", default_value = "50", value_parser = clap::value_parser!(u32).range(1..))]
+    every: u32,
+}
 
 fn main() -> Result<(), Error> {
+    let Arguments { frames, every } = Arguments::parse();
     let mut world = build_town()?;
     let mut scene = Scene::new(SceneConfig::default());
     let mut eye = Culler::new(DualQuery::default());
@@ -41,11 +62,11 @@ fn main() -> Result<(), Error> {
     // The app's renderer. All that it needs to know is which ids to draw.
     let mut draw_list: HashSet<u32> = HashSet::new();
 
-    println!("A drive through a town, culled on the CPU: what the renderer is told, every 50 frames.");
+    println!("A drive through a town, culled on the CPU: what the renderer is told, every {every} frames.");
     println!("frame  objects  visible  entered  left  questions  culling");
-    for frame in 0..=FRAMES {
+    for frame in 0..=frames {
         drive(&mut world);
-        let t = frame as f32 / FRAMES as f32;
+        let t = frame as f32 / frames as f32;
         let position = Vec3::new(-1.5, 1.7, BLOCK * (2.0 + 30.0 * t));
         let direction = Vec3::new((9.0 * t).sin(), 0.0, (9.0 * t).cos());
         let view = View::look_at(position, position + direction, 60.0, 0.1, Viewport::new(640, 360))?;
@@ -73,7 +94,7 @@ fn main() -> Result<(), Error> {
         draw_list.retain(|id| !left.contains(id));
         assert_eq!(draw_list.len(), eye.visible().len());
 
-        if frame % 50 == 0 {
+        if frame % every == 0 {
             let (objects, visible, questions) = (scene.len(), draw_list.len(), stats.queries);
             let (entered, left) = (entered.len(), left.len());
             let culling = stats.policy + stats.draw + stats.query + stats.wait;

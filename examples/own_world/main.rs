@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! cargo run --release --example own_world
+//! cargo run --release --example own_world -- --help
 //! ```
 //!
 //! A camera and the sun look at a city. Both views share one scene; each has its own culler and its
 //! own questions, so the shadow map is culled just as the picture is. The last frame goes to
-//! `out/own_world.png`: bit for bit what it is without culling (`-- none` draws it so). No window is
-//! needed; `WGPU_BACKEND` chooses between Vulkan, OpenGL and the rest.
+//! `out/own_world.png`: bit for bit what it is without culling (`--policy none` draws it so). No window
+//! is needed; `WGPU_BACKEND` chooses between Vulkan, OpenGL and the rest.
 //!
 //! What an app with a renderer has anyway is in `gpu.rs`, `city.rs` and `shader.wgsl`.
 
@@ -15,6 +16,8 @@ mod city;
 mod gpu;
 
 use city::{Look, Velocity};
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
 use gpu::Gpu;
 use hecs::World;
 use image::{RgbaImage, imageops};
@@ -28,14 +31,42 @@ use wgpu::{TextureFormat, TextureUsages, TextureView};
 /// The shadow map's sides, in pixels.
 const SHADOW_MAP: [u32; 2] = [2048; 2];
 
+/// Draws a city with an app's own pipelines, shadows included, and culls both the picture and the
+/// shadow map; the last frame goes to out/own_world.png
+#[derive(Parser)]
+#[command(name = "own_world")]
+#[command(after_long_help = "\
+Examples:
+  cargo run --release --example own_world
+      how much is drawn in the picture and in the shadow map, frame by frame
+  cargo run --release --example own_world -- --policy none
+      nothing is culled, and the picture is the same to the bit
+  WGPU_BACKEND=gl cargo run --release --example own_world -- --policy chc++ --frames 10
+      another algorithm, on OpenGL, for a shorter time")]
+struct Arguments {
+    /// The culling algorithm of both views; README.md says what each does
+    #[arg(long, value_name = "NAME", default_value = "dual-query", value_parser = PossibleValuesParser::new(policies()))]
+    policy: String,
+
+    /// How many frames are drawn
+    #[arg(long, value_name = "N", default_value = "40", value_parser = clap::value_parser!(u32).range(1..))]
+    frames: u32,
+}
+
 fn main() -> anyhow::Result<()> {
-    let policy = std::env::args().nth(1).unwrap_or_else(|| "dual-query".to_owned());
-    let Frame { picture, .. } = run(&policy, 40, [1920, 1080])?;
+    let Arguments { policy, frames } = Arguments::parse();
+    let Frame { picture, .. } = run(&policy, frames, [1920, 1080])?;
     std::fs::create_dir_all("out")?;
     // At half the size, edges are smooth.
     imageops::thumbnail(&picture, 960, 540).save("out/own_world.png")?;
     println!("out/own_world.png is the last frame");
     Ok(())
+}
+
+/// Those that find out by themselves what they draw.
+fn policies() -> impl Iterator<Item = &'static str> {
+    let finds_out = |name: &str| policy::by_name(name).is_ok_and(|policy| policy.wants_recorded().is_none());
+    policy::NAMES.iter().copied().filter(move |name| finds_out(name))
 }
 
 /// A frame.

@@ -109,7 +109,7 @@ pub fn panel<'a>(area: &Sheet<'a>, title: &str) -> anyhow::Result<Sheet<'a>> {
 }
 
 /// As many decimals as there are.
-fn decimals(y: &f64) -> String {
+pub fn decimals(y: &f64) -> String {
     format!("{}", (y * 1e6).round() / 1e6)
 }
 

@@ -20,7 +20,8 @@ const SHADOW_SIDE: u32 = 8192;
 /// Half the side of the square of texels that soften a shadow's edge.
 const SOFTNESS: i32 = 2;
 
-/// Draws the frame once more, whole and larger, and saves it into a folder that exists.
+/// Draws the frame once more, whole and larger, and saves it into a folder that exists. Of a world that
+/// is empty it shows the sky.
 pub fn write(out: &Path, scene: &Scene, world: &World, view: &View, painter: &Painter) -> anyhow::Result<()> {
     let view = larger(view)?;
     let mut oracle = Oracle::new();
@@ -28,7 +29,8 @@ pub fn write(out: &Path, scene: &Scene, world: &World, view: &View, painter: &Pa
         painter.draw(world, &view, pass, objects);
     })?;
     let bounds = scene.objects().filter_map(|o| o.bounds).fold(Aabb::EMPTY, |all, b| all.union(&b));
-    let sun = Sun::new(scene, world, &bounds, painter)?;
+    // Without a box in the scene, nothing says how wide the shadow map must be; and hardly a shadow falls.
+    let sun = if bounds.is_empty() { None } else { Some(Sun::new(scene, world, &bounds, painter)?) };
     let (width, height) = (view.viewport().width, view.viewport().height);
     let mut colors = vec![None; scene.slot_bound()];
     for SceneObject { object, .. } in scene.objects() {
@@ -40,7 +42,7 @@ pub fn write(out: &Path, scene: &Scene, world: &World, view: &View, painter: &Pa
             let (x, y) = (at % width, at / width);
             let hit = oracle.surface(x, y)?;
             let color = colors[hit.object.id.slot()]?;
-            Some(surface(&view, &sun, (x, y), &hit, color))
+            Some(surface(&view, sun.as_ref(), (x, y), &hit, color))
         })
         .collect();
     let haze = 5.0 * bounds.size().length();
@@ -59,7 +61,13 @@ fn larger(view: &View) -> anyhow::Result<View> {
     Ok(view)
 }
 
-fn surface(view: &View, sun: &Sun, (x, y): (u32, u32), hit: &oracle::Surface, color: [u8; 3]) -> Surface {
+fn surface(
+    view: &View,
+    sun: Option<&Sun>,
+    (x, y): (u32, u32),
+    hit: &oracle::Surface,
+    color: [u8; 3],
+) -> Surface {
     let viewport = view.viewport();
     let ndc = DVec4::new(
         (f64::from(x) + 0.5) / f64::from(viewport.width) * 2.0 - 1.0,
@@ -73,7 +81,8 @@ fn surface(view: &View, sun: &Sun, (x, y): (u32, u32), hit: &oracle::Surface, co
     let toward_eye = (view.eye().truncate() - position * view.eye().w).normalize_or_zero();
     let normal = hit.normal();
     let normal = if normal.dot(toward_eye) < 0.0 { -normal } else { normal };
-    Surface { position, normal, color, sunlit: sun.reaches(position, normal) }
+    let sunlit = sun.map_or(1.0, |sun| sun.reaches(position, normal));
+    Surface { position, normal, color, sunlit }
 }
 
 /// What the sun sees.
@@ -124,5 +133,25 @@ impl Sun {
         }
         let side = 2 * SOFTNESS + 1;
         lit as f32 / (side * side) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tercet::draw::Detail;
+    use tercet::scene::SceneConfig;
+
+    use super::*;
+
+    #[test]
+    fn an_empty_world_shows_the_sky() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let view = View::look_at(Vec3::ZERO, Vec3::NEG_Z, 60.0, 0.1, Viewport::new(32, 18)).expect("a view");
+        let (scene, world) = (Scene::new(SceneConfig::default()), World::new());
+        write(folder.path(), &scene, &world, &view, &Painter { detail: Detail::FULL }).expect("a picture");
+        let picture = image::open(folder.path().join("last_frame.png")).expect("it was written").into_rgb8();
+        assert_eq!(picture.dimensions(), (32, 18));
+        let [top, bottom] = [0, 17].map(|y| picture.get_pixel(16, y).0);
+        assert!(top[2] > top[0] && bottom[0] > top[0], "blue above, paler below: {top:?}, {bottom:?}");
     }
 }

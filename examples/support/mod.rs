@@ -23,6 +23,7 @@ pub mod run;
 pub mod scenario;
 pub mod stage;
 pub mod table;
+pub mod ticks;
 pub mod top_view;
 pub mod twin;
 mod values;

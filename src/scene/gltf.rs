@@ -13,11 +13,12 @@ use std::path::Path;
 
 use glam::Vec3;
 use gltf::accessor::{DataType, Dimensions};
-use gltf::buffer::Data;
+use gltf::buffer::Source;
 use gltf::json::{Value, deserialize};
 use gltf::mesh::{Mode, Semantic};
 
 use super::compact::compact;
+use super::import::read_uri;
 use super::mesh::{Level, Mesh};
 use crate::Error;
 
@@ -41,8 +42,8 @@ fn read_mesh(path: &Path) -> Result<Mesh, String> {
     let unchecked = gltf::Gltf::from_slice_without_validation(&bytes).map_err(|e| e.to_string())?;
     check_accessors(unchecked.document.as_json())?;
     let file = gltf::Gltf::from_slice(&bytes).map_err(|e| e.to_string())?;
-    let folder = path.parent();
-    let buffers = gltf::import_buffers(&file.document, folder, file.blob).map_err(|e| e.to_string())?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let buffers = read_buffers(&file.document, folder, file.blob)?;
     let mut stand_ins = Vec::new();
     for node in file.document.nodes() {
         stand_ins.extend(coarser_nodes(&node)?);
@@ -84,6 +85,28 @@ fn check_accessors(root: &gltf::json::Root) -> Result<(), String> {
     }
 }
 
+/// The bytes of every buffer: the file's binary chunk, data URIs, files beside it.
+fn read_buffers(
+    document: &gltf::Document,
+    folder: &Path,
+    mut chunk: Option<Vec<u8>>,
+) -> Result<Vec<Vec<u8>>, String> {
+    let read = |buffer: gltf::Buffer<'_>| {
+        let in_buffer = |why: String| format!("buffer {}: {why}", buffer.index());
+        let bytes = match buffer.source() {
+            Source::Bin => chunk.take().ok_or_else(|| "there is no binary chunk for it".to_owned()),
+            Source::Uri(uri) => read_uri(folder, uri),
+        };
+        let bytes = bytes.map_err(in_buffer)?;
+        if bytes.len() >= buffer.length() {
+            Ok(bytes)
+        } else {
+            Err(in_buffer(format!("it has {} bytes of the {} that it claims", bytes.len(), buffer.length())))
+        }
+    };
+    document.buffers().map(read).collect()
+}
+
 /// The nodes that stand in for a node, finest first.
 fn coarser_nodes(node: &gltf::Node<'_>) -> Result<Vec<usize>, String> {
     let Some(lod) = node.extension_value("MSFT_lod") else { return Ok(Vec::new()) };
@@ -104,7 +127,7 @@ fn stated_error(mesh: &gltf::Mesh<'_>) -> Result<Option<f32>, String> {
     }
 }
 
-fn read_level(mesh: &gltf::Mesh<'_>, error: f32, buffers: &[Data]) -> Result<Level, String> {
+fn read_level(mesh: &gltf::Mesh<'_>, error: f32, buffers: &[Vec<u8>]) -> Result<Level, String> {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     for primitive in mesh.primitives() {
         let bad = |why: &str| format!("mesh {}, primitive {}: {why}", mesh.index(), primitive.index());
@@ -125,7 +148,7 @@ fn read_level(mesh: &gltf::Mesh<'_>, error: f32, buffers: &[Data]) -> Result<Lev
         if !primitive.indices().is_none_or(indices_fit) {
             return Err(bad("has indices that are no whole numbers"));
         }
-        let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(|data| &data.0[..]));
+        let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
         let first = positions.len() as u32;
         let read = reader.read_positions().ok_or_else(|| bad("has no positions that can be read"))?;
         positions.extend(read.map(Vec3::from));
@@ -220,6 +243,13 @@ mod tests {
                 "mesh 0, primitive 0",
             ),
             ("index", "AAECAA==", "AAEJAA==", "index 2"),
+            (
+                "short-buffer",
+                r#""byteLength": 40"#,
+                r#""byteLength": 400"#,
+                "buffer 0: it has 40 bytes of the 400",
+            ),
+            ("no-chunk", r#""uri""#, r#""url""#, "buffer 0: there is no binary chunk"),
             ("short-positions", "5126", "5123", "no positions of three floats"),
             ("flat-positions", r#""VEC3""#, r#""VEC2""#, "no positions of three floats"),
             ("float-indices", "5121", "5126", "no whole numbers"),

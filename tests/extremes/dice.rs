@@ -1,26 +1,17 @@
 //! Random views and boxes that crowd at the extremes: millions of them a minute, which is why they
 //! are not proptest's.
 
-use glam::camera::rh::proj::directx;
-use glam::{DVec4, Mat4, Quat, Vec2, Vec3, Vec4Swizzles};
+use glam::{DVec4, Mat4, Quat, Vec3, Vec4Swizzles};
 use rand::{Rng, RngExt};
-use tercet::geom::{Aabb, DepthDirection, DepthFormat, View, Viewport, projection};
+use tercet::geom::{Aabb, DepthDirection, DepthFormat, View, Viewport};
+
+use super::samples::lens::{Lens, direction, log_range};
 
 /// A box in a view, and some of its points.
 #[derive(Debug)]
 pub(crate) struct Case {
     pub(crate) aabb: Aabb,
     pub(crate) points: [Vec3; 4],
-}
-
-/// Uniform in the logarithm.
-fn log_range(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
-    rng.random_range(low.ln()..=high.ln()).exp().clamp(low, high)
-}
-
-fn direction(rng: &mut impl Rng) -> Vec3 {
-    let v = Vec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0f32)));
-    v.normalize_or(Vec3::X)
 }
 
 fn side(rng: &mut impl Rng) -> u32 {
@@ -36,7 +27,6 @@ pub(crate) fn view(rng: &mut impl Rng) -> View {
     if rng.random_bool(0.2) {
         (viewport.x, viewport.y) = (side(rng), side(rng));
     }
-    let aspect = viewport.width as f32 / viewport.height as f32;
     let fov = match rng.random_range(0..5) {
         0 => 0.1,
         1 => 179.0,
@@ -46,34 +36,8 @@ pub(crate) fn view(rng: &mut impl Rng) -> View {
     };
     let (fov, near) = (fov.to_radians(), log_range(rng, 1e-3, 100.0));
     let far = near * if rng.random_bool(0.5) { 1e9 } else { log_range(rng, 2.0, 1e9) };
-    let mut depth = DepthDirection::Reversed;
-    let clip_from_view = match rng.random_range(0..8) {
-        0 | 1 => projection::perspective(fov, aspect, near),
-        2 => projection::perspective_finite(fov, aspect, near, far),
-        3 => {
-            depth = DepthDirection::Standard;
-            projection::perspective_standard(fov, aspect, near, far)
-        }
-        4 => {
-            let width = log_range(rng, 1e-3, 1e7);
-            projection::orthographic(width, width / aspect, near, far)
-        }
-        5 => {
-            depth = DepthDirection::Standard;
-            let (x, y) = (log_range(rng, 1e-3, 1e7), log_range(rng, 1e-3, 1e7));
-            directx::orthographic(-x, x, -y, y, near, far)
-        }
-        6 => {
-            let tilt = Vec3::new(rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5), -1.0);
-            let plane = tilt.normalize().extend(-near);
-            projection::oblique(projection::perspective(fov.clamp(0.1, 2.0), aspect, near), plane)
-        }
-        _ => {
-            let pixels = Vec2::new(rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5));
-            let still = projection::perspective(fov, aspect, near);
-            projection::jittered(still, pixels, viewport.width, viewport.height)
-        }
-    };
+    let lens = Lens { viewport, fov, near, far, widths: 1e-3..1e7 };
+    let (clip_from_view, depth) = lens.projection(rng);
     let turn = match rng.random_range(0..3) {
         0 => Quat::from_rotation_y(std::f32::consts::FRAC_PI_2 * rng.random_range(0..4) as f32),
         _ => Quat::from_axis_angle(direction(rng), rng.random_range(0.0..std::f32::consts::TAU)),

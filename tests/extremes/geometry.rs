@@ -7,7 +7,7 @@ use proptest::test_runner::TestRunner;
 use tercet::Error;
 use tercet::geom::{Aabb, Frustum, PlaneMask, Projected, Question, View, Viewport, project, projection};
 
-use super::differential::holds;
+use super::check::holds;
 use super::strategies::{Ends, bad_box, singular_matrix, sound_box, thin_box, view};
 
 /// Cases a test: the sweep has the millions.

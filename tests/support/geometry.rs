@@ -2,10 +2,14 @@
 //! the library: it transforms as an app's vertex shader does, in f32, snaps as a rasteriser does,
 //! and decides coverage in exact integers.
 
-use glam::camera::rh::proj::directx;
+#[path = "lens.rs"]
+pub(crate) mod lens;
+
 use glam::{Affine3A, DVec3, DVec4, Mat4, Quat, Vec2, Vec3, Vec4};
 use rand::{Rng, RngExt};
 use tercet::geom::{Aabb, DepthDirection, DepthFormat, View, Viewport, projection};
+
+use lens::{Lens, direction, log_range};
 
 /// A box in a view, with an object in it to draw triangles of.
 #[derive(Debug)]
@@ -29,15 +33,6 @@ pub(crate) struct Sample {
     pub(crate) nearness: [f64; 2],
 }
 
-/// Uniform in the logarithm.
-fn log_range(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
-    rng.random_range(low.ln()..=high.ln()).exp()
-}
-
-fn direction(rng: &mut impl Rng) -> Vec3 {
-    Vec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0f32))).normalize_or(Vec3::X)
-}
-
 fn rotation(rng: &mut impl Rng) -> Quat {
     if rng.random_bool(0.3) {
         let quarter = std::f32::consts::FRAC_PI_2;
@@ -53,7 +48,6 @@ pub(crate) fn random_view(rng: &mut impl Rng) -> View {
     if rng.random_bool(0.2) {
         (viewport.x, viewport.y) = (side(rng), side(rng));
     }
-    let aspect = viewport.width as f32 / viewport.height as f32;
     let fov = match rng.random_range(0..4) {
         0 => log_range(rng, 0.1, 10.0),
         1 => rng.random_range(120.0..179.0f32),
@@ -61,34 +55,8 @@ pub(crate) fn random_view(rng: &mut impl Rng) -> View {
     };
     let (fov, near) = (fov.to_radians(), log_range(rng, 1e-3, 10.0));
     let far = near * log_range(rng, 10.0, 1e9);
-    let mut depth = DepthDirection::Reversed;
-    let clip_from_view = match rng.random_range(0..8) {
-        0 | 1 => projection::perspective(fov, aspect, near),
-        2 => projection::perspective_finite(fov, aspect, near, far),
-        3 => {
-            depth = DepthDirection::Standard;
-            projection::perspective_standard(fov, aspect, near, far)
-        }
-        4 => {
-            let width = log_range(rng, 1e-2, 1e4);
-            projection::orthographic(width, width / aspect, near, far)
-        }
-        5 => {
-            depth = DepthDirection::Standard;
-            let (x, y) = (log_range(rng, 1e-2, 1e4), log_range(rng, 1e-2, 1e4));
-            directx::orthographic(-x, x, -y, y, near, far)
-        }
-        6 => {
-            let tilt = Vec3::new(rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5), -1.0);
-            let plane = tilt.normalize().extend(-near);
-            projection::oblique(projection::perspective(fov.clamp(0.1, 2.0), aspect, near), plane)
-        }
-        _ => {
-            let pixels = Vec2::new(rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5));
-            let still = projection::perspective(fov, aspect, near);
-            projection::jittered(still, pixels, viewport.width, viewport.height)
-        }
-    };
+    let lens = Lens { viewport, fov, near, far, widths: 1e-2..1e4 };
+    let (clip_from_view, depth) = lens.projection(rng);
     let scale = [0.0, 1.0, 10.0, 100.0, 1e3, 1e4, 1e7][rng.random_range(0..7)];
     let (turn, eye) = (rotation(rng), direction(rng) * scale);
     let view_from_world = Mat4::from_rotation_translation(turn, -(turn * eye));

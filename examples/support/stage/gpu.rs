@@ -69,7 +69,7 @@ impl Gpu {
     /// Waits until everything that was submitted is done.
     ///
     /// # Errors
-    /// When the device is lost, or takes longer than [`PATIENCE`].
+    /// When the device is lost, or takes longer than a minute.
     pub fn wait(&self) -> anyhow::Result<()> {
         let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
         // A device that is lost meanwhile makes wgpu 30 panic.

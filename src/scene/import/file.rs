@@ -157,7 +157,8 @@ fn check_extensions(root: &Root) -> Result<(), String> {
     }
 }
 
-fn read_uri(folder: &Path, uri: &str) -> Result<Vec<u8>, String> {
+/// The bytes of a buffer outside the file: in a data URI, or in a file of this folder.
+pub(in crate::scene) fn read_uri(folder: &Path, uri: &str) -> Result<Vec<u8>, String> {
     if uri.starts_with("data:") {
         let url = DataUrl::process(uri).map_err(|e| format!("its data URI cannot be read: {e}"))?;
         let (bytes, _) = url.decode_to_vec().map_err(|e| format!("its data URI cannot be read: {e}"))?;

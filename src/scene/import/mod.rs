@@ -38,6 +38,7 @@ use crate::Error;
 use crate::scene::mesh::Mesh;
 use crate::worlds::{Model, Placed};
 use file::File;
+pub(super) use file::read_uri;
 use material::Look;
 use nodes::Place;
 use primitive::{Reason, Shape};

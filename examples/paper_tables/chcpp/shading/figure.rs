@@ -1,16 +1,14 @@
 //! `chcpp_shading.png`: a frame's time, and its ratio to the view frustum's, by look-ups.
 
-use plotters::prelude::*;
-
 use super::{COMPARED, LOOK_UPS, Shaded};
 use crate::chcpp::algorithms::ALGORITHMS;
 use crate::output::Output;
-use support::axis::{nice_top, plain};
-use support::canvas::{self, Key, Sheet, px};
-use support::chart::panel;
+use support::canvas::{self, Key, Sheet};
+use support::chart::{decimals, panel};
 use support::flags::Flags;
 use support::lockstep::Measured;
 use support::stage::Gpu;
+use support::ticks::{Axes, Line};
 
 const SIZE: (u32, u32) = (1200, 480);
 
@@ -40,33 +38,17 @@ pub fn write(output: &Output, flags: &Flags, gpu: &Gpu, all: &[Shaded]) -> anyho
 
 /// A line an algorithm, over the numbers of look-ups side by side.
 fn draw(cell: &Sheet<'_>, title: &str, unit: &str, all: &[Shaded], value: Value<'_>) -> anyhow::Result<()> {
-    let area = panel(cell, title)?;
-    let values = all.iter().flat_map(|shaded| shaded.lanes.iter().map(move |lane| value(shaded, lane)));
-    let highest = values.fold(0.0, f64::max);
-    let right = LOOK_UPS.len() as f64 - 0.5;
-    let mut chart = ChartBuilder::on(&area)
-        .margin(px(20))
-        .margin_top(px(6))
-        .x_label_area_size(px(44))
-        .y_label_area_size(px(66))
-        .build_cartesian_2d(-0.5..right, 0.0..nice_top(1.05 * highest))?;
-    let tick = |x: &f64| {
-        let at = (*x >= 0.0 && x.fract() == 0.0).then(|| LOOK_UPS.get(*x as usize)).flatten();
-        at.map(ToString::to_string).unwrap_or_default()
+    let line = |(nth, &n): (usize, &usize)| Line {
+        color: ALGORITHMS[n].color,
+        values: all.iter().map(|shaded| value(shaded, &shaded.lanes[nth])).collect(),
     };
-    plain(&mut chart.configure_mesh())
-        .disable_x_mesh()
-        .x_labels(LOOK_UPS.len() + 1)
-        .x_desc("look-ups a fragment")
-        .y_desc(unit)
-        .x_label_formatter(&tick)
-        .draw()?;
-    for (nth, &n) in COMPARED.iter().enumerate() {
-        let color = ALGORITHMS[n].color;
-        let point = |(x, shaded): (usize, &Shaded)| (x as f64, value(shaded, &shaded.lanes[nth]));
-        let points: Vec<(f64, f64)> = all.iter().enumerate().map(point).collect();
-        chart.draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(px(2) as u32)))?;
-        chart.draw_series(points.iter().map(|&point| Circle::new(point, px(4), color.filled())))?;
-    }
-    Ok(())
+    let lines: Vec<Line> = COMPARED.iter().enumerate().map(line).collect();
+    let axes = Axes {
+        x: "look-ups a fragment",
+        y: unit,
+        ticks: LOOK_UPS.iter().map(ToString::to_string).collect(),
+        label: decimals,
+        least_top: 0.0,
+    };
+    axes.draw(&panel(cell, title)?, &lines)
 }
