@@ -1,6 +1,7 @@
 //! What is compared.
 
 use plotters::style::RGBColor;
+use tercet::query::SweepTest;
 
 use crate::algorithm::Algorithm;
 
@@ -41,6 +42,18 @@ pub const ALGORITHMS: [Algorithm; 11] = [
     of("dual-query (ours)", RGBColor(150, 100, 180), "dual-query", &[]),
     of("REF", RGBColor(44, 160, 90), "exact", &[]),
 ];
+
+/// Those that the device runs by itself, with how it tests; on the GPU they come after the others.
+pub const GPU_DRIVEN: [(Algorithm, SweepTest); 3] = [
+    (of("ROC, GPU-driven", RGBColor(140, 50, 35), "roc", &[]), SweepTest::Raster),
+    (of("Hi-Z, GPU-driven", RGBColor(160, 95, 15), "hi-z", &[]), SweepTest::HiZ),
+    (of("HROC, GPU-driven", RGBColor(60, 120, 130), "hroc", &[]), SweepTest::Rays),
+];
+
+/// All of them, in the order of the page.
+pub fn all() -> impl Iterator<Item = &'static Algorithm> {
+    const { &ALGORITHMS }.iter().chain(const { &GPU_DRIVEN }.iter().map(|(algorithm, _)| algorithm))
+}
 
 const fn of(
     name: &'static str,

@@ -1,7 +1,7 @@
 //! `hroc_frame_time.png` and `hroc_drawn.png`: a panel a scene.
 
 use super::Outcome;
-use super::algorithms::{ALGORITHMS, VFC};
+use super::algorithms::{self, VFC};
 use crate::output::Output;
 use support::canvas::{self, Key};
 use support::chart::{self, Curve, log_axes, panel};
@@ -45,7 +45,9 @@ pub fn write(output: &Output, flags: &Flags, outcomes: &[Outcome]) -> anyhow::Re
 
 impl Figure {
     fn save(&self, output: &Output, flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<()> {
-        let keys: Vec<Key> = ALGORITHMS.iter().map(|a| Key::new(a.color, a.name)).collect();
+        let lanes = outcomes.first().map_or(0, |outcome| outcome.lanes.len());
+        let algorithms: Vec<_> = algorithms::all().take(lanes).collect();
+        let keys: Vec<Key> = algorithms.iter().map(|a| Key::new(a.color, a.name)).collect();
         let (width, height) = flags.size;
         let subtitle = format!(
             "worlds at scale {} · {} frames a scene · {} · {width} × {height} · seed {}",
@@ -60,12 +62,12 @@ impl Figure {
             let cells = below.split_evenly((rows, COLUMNS));
             for (cell, outcome) in cells.iter().zip(outcomes) {
                 let area = panel(cell, outcome.scene.name)?;
-                let curve = |n: usize| Curve {
-                    values: outcome.lanes[n].frames.iter().map(self.value).collect(),
-                    color: ALGORITHMS[n].color,
+                let curves = algorithms.iter().zip(&outcome.lanes).map(|(algorithm, lane)| Curve {
+                    values: lane.frames.iter().map(self.value).collect(),
+                    color: algorithm.color,
                     width: 2,
-                };
-                let curves: Vec<Curve> = (0..ALGORITHMS.len()).map(curve).collect();
+                });
+                let curves: Vec<Curve> = curves.collect();
                 let range = chart::log_range(&curves);
                 let frames = outcome.lanes[VFC].frames.len();
                 let mut chart = log_axes(&area, frames, range.clone(), self.unit)?;

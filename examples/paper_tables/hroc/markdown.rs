@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::algorithms::{ALGORITHMS, AUTO, FILTERED, HI_Z, HROC, HYBRID, ROC, VFC};
+use super::algorithms::{self, ALGORITHMS, AUTO, FILTERED, HI_Z, HROC, HYBRID, ROC, VFC};
 use super::{Outcome, adapter};
 use support::flags::Flags;
 use support::markdown::{command, known, lost, percent, setting_on, table};
@@ -62,7 +62,8 @@ sweep is nearly free and drawing is not; its worlds are not ours either.
 
 const ON_A_DEVICE: &str = "\
 - What is tested is boxes: by their rasterised proxies, by rays, or by a map of farthest depths. Filtering \
-reads an item buffer.
+reads an item buffer. What is GPU-driven is culled by the device alone: nothing comes back, and every \
+frame has two passes of draws.
 - A frame's time ends when the device has finished. Drawing, sweeping and culling are in it. The paper's \
 worlds are not ours.
 ";
@@ -77,11 +78,12 @@ fn heading(outcome: &Outcome) -> String {
 /// A row an algorithm, a column a scene.
 fn by_scene(outcomes: &[Outcome], cell: impl Fn(&Outcome, usize) -> String) -> String {
     let header: Vec<&str> = std::iter::once("").chain(outcomes.iter().map(|o| o.scene.name)).collect();
-    let row = |n: usize| {
+    let lanes = outcomes.first().map_or(0, |outcome| outcome.lanes.len());
+    let rows = algorithms::all().take(lanes).enumerate().map(|(n, algorithm)| {
         let cells = outcomes.iter().map(|outcome| cell(outcome, n));
-        std::iter::once(ALGORITHMS[n].name.to_owned()).chain(cells).collect()
-    };
-    table(&header, (0..ALGORITHMS.len()).map(row))
+        std::iter::once(algorithm.name.to_owned()).chain(cells).collect()
+    });
+    table(&header, rows)
 }
 
 /// What there is to win by asking about boxes alone.
@@ -146,7 +148,7 @@ fn algorithms(outcome: &Outcome) -> String {
         "triangles",
         "wrongly culled",
     ];
-    let rows = ALGORITHMS.iter().zip(&outcome.lanes).enumerate().map(|(n, (algorithm, lane))| {
+    let rows = algorithms::all().zip(&outcome.lanes).enumerate().map(|(n, (algorithm, lane))| {
         let s = &lane.summary;
         let paper = outcome.scene.published.and_then(|p| p.culled(n));
         vec![

@@ -16,10 +16,10 @@ use anyhow::Context;
 
 use crate::frames;
 use crate::output::Output;
-use algorithms::{ALGORITHMS, FILTERED, REF, VFC};
+use algorithms::{ALGORITHMS, FILTERED, GPU_DRIVEN, REF, VFC};
 use scenes::{SCENES, Scene};
 use support::flags::{Backend, Flags};
-use support::lockstep::Measured;
+use support::lockstep::{Lane, Measured};
 use support::report::write_csv;
 use support::stage::{Gpu, Stage};
 
@@ -29,7 +29,7 @@ const SCALE: f32 = 0.25;
 /// A scene, measured.
 pub struct Outcome {
     scene: &'static Scene,
-    /// By algorithm, as in [`ALGORITHMS`].
+    /// By algorithm, as in [`algorithms::all`].
     lanes: Vec<Measured>,
 }
 
@@ -38,19 +38,14 @@ pub fn run(flags: &Flags) -> anyhow::Result<()> {
     let flags = &flags.with_default_scale(SCALE);
     let gpu = match flags.backend {
         Backend::Wgpu => Some(Gpu::open()?.with_context(no_adapter)?),
-        Backend::Auto | Backend::Software => None,
+        Backend::Auto | Backend::Software | Backend::GpuDriven => None,
     };
-    let stage = || match &gpu {
-        Some(gpu) => Stage::on(gpu.clone(), flags.detail()?),
-        None => Ok(Stage::software(flags.detail()?)),
-    };
-    let frames = SCENES.len() * ALGORITHMS.len() * flags.frames as usize;
+    let count = ALGORITHMS.len() + if gpu.is_some() { GPU_DRIVEN.len() } else { 0 };
+    let frames = SCENES.len() * count * flags.frames as usize;
     let output = Output::new(flags, "hroc", frames as u64)?;
     let mut outcomes = Vec::new();
     for scene in &SCENES {
-        let lanes = ALGORITHMS.iter().map(|algorithm| algorithm.lane_on(stage()?, flags));
-        let lanes = lanes.collect::<anyhow::Result<_>>()?;
-        let lanes = output.run(scene.build(flags)?, flags, lanes)?;
+        let lanes = output.run(scene.build(flags)?, flags, lanes(flags, gpu.as_ref())?)?;
         let outcome = Outcome { scene, lanes };
         output.say(&outcome.line());
         outcomes.push(outcome);
@@ -60,6 +55,19 @@ pub fn run(flags: &Flags) -> anyhow::Result<()> {
     frames::write(&output.file("_frames.csv"), outcomes.iter().flat_map(rows::runs))?;
     figures::write(&output, flags, &outcomes)?;
     output.finish(&markdown::page(flags, &outcomes)?)
+}
+
+/// A lane an algorithm, on the GPU if there is one.
+fn lanes(flags: &Flags, gpu: Option<&Gpu>) -> anyhow::Result<Vec<Lane>> {
+    let stage = || match gpu {
+        Some(gpu) => Stage::on(gpu.clone(), flags.detail()?),
+        None => Ok(Stage::software(flags.detail()?)),
+    };
+    let host = ALGORITHMS.iter().map(|algorithm| algorithm.lane_on(stage()?, flags));
+    let device = gpu.into_iter().flat_map(|gpu| {
+        GPU_DRIVEN.iter().map(|&(_, test)| Lane::gpu_driven(gpu.clone(), flags, test, flags.tree()?))
+    });
+    host.chain(device).collect()
 }
 
 /// What draws, if it is not the software backend.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Outcome;
-use super::algorithms::ALGORITHMS;
+use super::algorithms;
 use support::lockstep::Measured;
 use support::report::round;
 
@@ -41,12 +41,12 @@ pub struct Row<'a> {
 
 /// All runs of a scene, with the algorithms' names.
 pub fn runs(outcome: &Outcome) -> impl Iterator<Item = (&str, &str, &Measured)> {
-    ALGORITHMS.iter().zip(&outcome.lanes).map(|(algorithm, lane)| (outcome.scene.name, algorithm.name, lane))
+    algorithms::all().zip(&outcome.lanes).map(|(algorithm, lane)| (outcome.scene.name, algorithm.name, lane))
 }
 
 /// The rows of a scene.
 pub fn rows(outcome: &Outcome) -> impl Iterator<Item = Row<'_>> {
-    ALGORITHMS.iter().zip(&outcome.lanes).enumerate().map(|(n, (algorithm, lane))| {
+    algorithms::all().zip(&outcome.lanes).enumerate().map(|(n, (algorithm, lane))| {
         let s = &lane.summary;
         let published = outcome.scene.published;
         Row {
