@@ -132,7 +132,7 @@ impl Flags {
         flags.policies = program.policies;
         if flags.backend == Backend::GpuDriven && flags.policy == "auto" {
             flags.policy = gpu_driven::FASTEST.to_owned();
-            println!("--policy auto: {}, the fastest way for the GPU to cull by itself.", flags.policy);
+            println!("--policy auto: with --backend gpu-driven that is {}.", flags.policy);
         }
         flags.has_objects = matches.value_source("objects") == Some(ValueSource::CommandLine);
         flags.has_scale = matches.value_source("scale") == Some(ValueSource::CommandLine);

@@ -4,6 +4,8 @@ use anyhow::bail;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command};
 
+use super::flags::Backend;
+
 /// A program that takes the shared [`Flags`](super::flags::Flags).
 #[derive(Clone, Debug)]
 pub struct Program {
@@ -89,6 +91,9 @@ impl Program {
             if matches.value_source(flag) == Some(ValueSource::CommandLine) {
                 bail!("{why}");
             }
+        }
+        if !self.takes("policy") && matches.get_one("backend") == Some(&Backend::GpuDriven) {
+            bail!("--backend gpu-driven has no meaning here: it culls in one way, and here several run");
         }
         Ok(())
     }

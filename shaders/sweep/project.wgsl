@@ -6,7 +6,7 @@
 @group(1) @binding(2) var<storage, read_write> made: array<Proxy>;
 @group(1) @binding(3) var<storage, read_write> verdicts: array<u32>;
 
-// See src/geom/proxy.rs.
+// See src/geom/coefficients.rs.
 const MAX_SLOPE: f32 = 1e6;
 
 // The value of the inward plane `p[axis] = at` along a column of world_from_clip.

@@ -48,6 +48,9 @@ struct View {
     drawn: usize,
 }
 
+/// Frames before memory is looked at: lists grow to what they need.
+const WARM_UP: u32 = 2000;
+
 /// The greatest of what was seen since it was last reset.
 #[derive(Clone, Copy, Debug, Default)]
 struct Most {
@@ -67,6 +70,7 @@ fn what_is_held_is_bounded_by_what_is_there() {
 }
 
 fn soak(frames: u32) {
+    let frames = WARM_UP + frames;
     let mut churn = Churn::new(1);
     // Fine leaves, whatever asking costs on this machine.
     let tree = TreeConfig { leaf_size: LeafSize::Fixed, ..TreeConfig::default() };
@@ -113,7 +117,8 @@ fn soak(frames: u32) {
         }
         drop(truth);
         scene.adapt(views.iter_mut().map(|view| &mut view.eye));
-        let most = &mut quarters[(4 * u64::from(frame) / u64::from(frames)) as usize];
+        let Some(after) = frame.checked_sub(WARM_UP) else { continue };
+        let most = &mut quarters[(4 * u64::from(after) / u64::from(frames - WARM_UP)) as usize];
         most.bytes = most.bytes.max(live_bytes());
         most.nodes = most.nodes.max(scene.tree().stats().nodes);
         most.depth = most.depth.max(scene.tree().stats().depth);

@@ -63,7 +63,7 @@ sweep is nearly free and drawing is not; its worlds are not ours either.
 const ON_A_DEVICE: &str = "\
 - What is tested is boxes: by their rasterised proxies, by rays, or by a map of farthest depths. Filtering \
 reads an item buffer. What is GPU-driven is culled by the device alone: nothing comes back, and every \
-frame has two passes of draws.
+frame draws twice at least.
 - A frame's time ends when the device has finished. Drawing, sweeping and culling are in it. The paper's \
 worlds are not ours.
 ";

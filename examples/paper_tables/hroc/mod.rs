@@ -12,7 +12,8 @@ mod published;
 mod rows;
 mod scenes;
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
+use tercet::draw::Detail;
 
 use crate::frames;
 use crate::output::Output;
@@ -40,6 +41,10 @@ pub fn run(flags: &Flags) -> anyhow::Result<()> {
         Backend::Wgpu => Some(Gpu::open()?.with_context(no_adapter)?),
         Backend::Auto | Backend::Software | Backend::GpuDriven => None,
     };
+    ensure!(
+        gpu.is_none() || flags.detail()? == Detail::FULL,
+        "on the GPU this table draws every mesh with all its triangles: leave out max_error_px"
+    );
     let count = ALGORITHMS.len() + if gpu.is_some() { GPU_DRIVEN.len() } else { 0 };
     let frames = SCENES.len() * count * flags.frames as usize;
     let output = Output::new(flags, "hroc", frames as u64)?;
@@ -64,9 +69,9 @@ fn lanes(flags: &Flags, gpu: Option<&Gpu>) -> anyhow::Result<Vec<Lane>> {
         None => Ok(Stage::software(flags.detail()?)),
     };
     let host = ALGORITHMS.iter().map(|algorithm| algorithm.lane_on(stage()?, flags));
-    let device = gpu.into_iter().flat_map(|gpu| {
-        GPU_DRIVEN.iter().map(|&(_, test)| Lane::gpu_driven(gpu.clone(), flags, test, flags.tree()?))
-    });
+    let device = gpu
+        .into_iter()
+        .flat_map(|gpu| GPU_DRIVEN.iter().map(|&(_, test)| Lane::gpu_driven(gpu.clone(), flags, test)));
     host.chain(device).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use anyhow::{bail, ensure};
+use anyhow::{Context, bail, ensure};
 use hecs::World;
 use tercet::FrameStats;
 use tercet::draw::{BySlot, Detail, Renderer, Shading};
@@ -126,10 +126,17 @@ impl GpuDrivenStage {
         });
         let mut ids: Vec<Option<ObjectId>> = vec![None; scene.slot_bound()];
         scene.objects().for_each(|object| ids[object.object.id.slot()] = Some(object.object.id));
-        let drawn: Vec<ObjectId> =
-            lists.iter().flat_map(|(_, slots)| slots).filter_map(|&slot| ids[slot as usize]).collect();
-        eye.policy_mut().give_recorded(&drawn);
+        let id_of = |&slot: &u32| ids.get(slot as usize).copied().flatten();
+        let listed: Option<Vec<ObjectId>> = lists.iter().flat_map(|(_, slots)| slots).map(id_of).collect();
+        let listed = listed.context("the device drew an object that there is not")?;
+        eye.policy_mut().give_recorded(&listed);
         let FrameStats { drawn, .. } = eye.frame(scene, view, echo, |_, _| ())?;
+        // The eye draws by itself what is never culled, and nothing twice: so must the device.
+        ensure!(
+            drawn as usize == listed.len(),
+            "the device drew {} objects, and {drawn} should have been drawn",
+            listed.len()
+        );
         Ok(Drawn {
             stats: FrameStats { drawn, draw, wait, ..FrameStats::default() },
             triangles: triangles.sum(),

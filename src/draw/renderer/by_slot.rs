@@ -135,7 +135,8 @@ impl BySlot {
         &self.meshes
     }
 
-    /// Forgets a mesh that no entity has any more; its number is given to the next one that is new.
+    /// Forgets a mesh that no entity has any more; its number is given to the next one that is new. If some
+    /// entity has it after all, nothing is drawn of it until [`BySlot::dress`] has given it another.
     pub fn forget(&mut self, mesh: &Mesh) {
         if let Some(batch) = self.known.remove(&mesh.id()) {
             self.of[batch.0 as usize] = None;
