@@ -1,7 +1,7 @@
 //! `hroc_frame_time.png` and `hroc_drawn.png`: a panel a scene.
 
 use super::Outcome;
-use super::algorithms::{self, VFC};
+use super::algorithms::VFC;
 use crate::output::Output;
 use support::canvas::{self, Key};
 use support::chart::{self, Curve, log_axes, panel};
@@ -45,8 +45,7 @@ pub fn write(output: &Output, flags: &Flags, outcomes: &[Outcome]) -> anyhow::Re
 
 impl Figure {
     fn save(&self, output: &Output, flags: &Flags, outcomes: &[Outcome]) -> anyhow::Result<()> {
-        let lanes = outcomes.first().map_or(0, |outcome| outcome.lanes.len());
-        let algorithms: Vec<_> = algorithms::all().take(lanes).collect();
+        let algorithms: Vec<_> = super::algorithms(outcomes).collect();
         let keys: Vec<Key> = algorithms.iter().map(|a| Key::new(a.color, a.name)).collect();
         let (width, height) = flags.size;
         let subtitle = format!(

@@ -78,8 +78,7 @@ fn heading(outcome: &Outcome) -> String {
 /// A row an algorithm, a column a scene.
 fn by_scene(outcomes: &[Outcome], cell: impl Fn(&Outcome, usize) -> String) -> String {
     let header: Vec<&str> = std::iter::once("").chain(outcomes.iter().map(|o| o.scene.name)).collect();
-    let lanes = outcomes.first().map_or(0, |outcome| outcome.lanes.len());
-    let rows = algorithms::all().take(lanes).enumerate().map(|(n, algorithm)| {
+    let rows = super::algorithms(outcomes).enumerate().map(|(n, algorithm)| {
         let cells = outcomes.iter().map(|outcome| cell(outcome, n));
         std::iter::once(algorithm.name.to_owned()).chain(cells).collect()
     });

@@ -12,9 +12,10 @@ mod published;
 mod rows;
 mod scenes;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use tercet::draw::Detail;
 
+use crate::algorithm::Algorithm;
 use crate::frames;
 use crate::output::Output;
 use algorithms::{ALGORITHMS, FILTERED, GPU_DRIVEN, REF, VFC};
@@ -37,10 +38,8 @@ pub struct Outcome {
 /// Runs all scenes and writes `hroc.md`, two tables and two figures into `--out`.
 pub fn run(flags: &Flags) -> anyhow::Result<()> {
     let flags = &flags.with_default_scale(SCALE);
-    let gpu = match flags.backend {
-        Backend::Wgpu => Some(Gpu::open()?.with_context(no_adapter)?),
-        Backend::Auto | Backend::Software | Backend::GpuDriven => None,
-    };
+    let is_wanted = flags.backend == Backend::Wgpu;
+    let gpu = is_wanted.then(|| Gpu::found(Gpu::open()?)).transpose()?;
     ensure!(
         gpu.is_none() || flags.detail()? == Detail::FULL,
         "on the GPU this table draws every mesh with all its triangles: leave out max_error_px"
@@ -80,11 +79,10 @@ fn adapter(outcomes: &[Outcome]) -> Option<&str> {
     outcomes.first()?.lanes[REF].summary.adapter.as_deref()
 }
 
-fn no_adapter() -> String {
-    format!(
-        "--backend wgpu: no graphics adapter was found; {}, or leave the flag out: the CPU draws",
-        Gpu::remedy()
-    )
+/// What ran, in the order of the page.
+fn algorithms(outcomes: &[Outcome]) -> impl Iterator<Item = &'static Algorithm> {
+    let lanes = outcomes.first().map_or(0, |outcome| outcome.lanes.len());
+    algorithms::all().take(lanes)
 }
 
 impl Outcome {

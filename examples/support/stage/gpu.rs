@@ -42,6 +42,15 @@ impl Gpu {
         Ok(Some(Self::new(&adapter, device, queue)))
     }
 
+    /// What [`Gpu::open`] gave, where there must be something.
+    ///
+    /// # Errors
+    /// When there is none, saying what to do.
+    pub fn found(gpu: Option<Self>) -> anyhow::Result<Self> {
+        let remedy = Self::remedy;
+        gpu.with_context(|| format!("no graphics adapter was found; {}, or use --backend software", remedy()))
+    }
+
     /// The device of somebody else.
     pub fn new(adapter: &Adapter, device: Device, queue: Queue) -> Self {
         Self { device, queue, info: adapter.get_info() }

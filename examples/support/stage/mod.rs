@@ -17,7 +17,6 @@ pub use software::SoftwareStage;
 pub use watched::{Asked, Watched};
 pub use wgpu::{Picture, WgpuStage};
 
-use anyhow::Context;
 use hecs::World;
 use tercet::FrameStats;
 use tercet::draw::Detail;
@@ -65,15 +64,11 @@ impl Stage {
         open: impl FnOnce() -> anyhow::Result<Option<Gpu>>,
     ) -> anyhow::Result<Self> {
         let detail = flags.detail()?;
-        let found = |gpu: Option<Gpu>| {
-            let remedy = Gpu::remedy();
-            gpu.with_context(|| format!("no graphics adapter was found; {remedy}, or use --backend software"))
-        };
         match flags.backend {
             Backend::Software => Ok(Self::software(detail)),
-            Backend::Wgpu => Self::on(found(open()?)?, detail),
+            Backend::Wgpu => Self::on(Gpu::found(open()?)?, detail),
             Backend::GpuDriven => {
-                Self::gpu_driven(found(open()?)?, gpu_driven::test_of(&flags.policy)?, detail)
+                Self::gpu_driven(Gpu::found(open()?)?, gpu_driven::test_of(&flags.policy)?, detail)
             }
             Backend::Auto => Ok(Self::best(open(), detail)),
         }

@@ -9,7 +9,7 @@ use wgpu::{
 
 use super::super::bind::{self, DepthAs, Layouts};
 use super::super::clock::Tape;
-use super::super::sweep::asked::exactly;
+use super::super::sweep::array::exactly;
 use super::super::sweep::{LANES, compute, grid};
 
 /// A mesh's objects in the order of all, and its part of the app's index buffer: the twin of `Mesh`

@@ -9,7 +9,7 @@ use wgpu::{
 
 use super::super::bind::{self, DepthAs, Layouts};
 use super::super::clock::Tape;
-use super::super::sweep::asked::exactly;
+use super::super::sweep::array::exactly;
 use super::super::sweep::{compute, grid};
 
 /// The lists of a frame, in the order of drawing: the twins of the constants in the shader.

@@ -4,7 +4,6 @@ use std::marker::PhantomData;
 
 use wgpu::{Buffer, BufferBinding, BufferDescriptor, BufferUsages, Device};
 
-use super::asked::exactly;
 use crate::Error;
 use crate::query::gpu::guard::failed;
 
@@ -75,6 +74,12 @@ impl<T> DeviceArray<T> {
     pub(in crate::query::gpu) fn all(&self) -> BufferBinding<'_> {
         exactly(&self.buffer, self.count, size_of::<T>())
     }
+}
+
+/// The first elements of a buffer, but at least one: nothing can be bound of no length.
+pub(in crate::query::gpu) fn exactly(buffer: &Buffer, count: u32, size: usize) -> BufferBinding<'_> {
+    let bytes = u64::from(count.max(1)) * size as u64;
+    BufferBinding { buffer, offset: 0, size: bytes.try_into().ok() }
 }
 
 fn buffer<T>(device: &Device, label: &str, usage: BufferUsages, count: usize) -> Buffer {

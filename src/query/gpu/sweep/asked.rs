@@ -69,9 +69,3 @@ impl Asked {
         &self.verdicts
     }
 }
-
-/// The first elements of a buffer, but at least one: nothing can be bound of no length.
-pub(in crate::query::gpu) fn exactly(buffer: &Buffer, count: u32, size: usize) -> BufferBinding<'_> {
-    let bytes = u64::from(count.max(1)) * size as u64;
-    BufferBinding { buffer, offset: 0, size: bytes.try_into().ok() }
-}
