@@ -67,17 +67,6 @@ fn place(vertex: Vertex, instance: Instance) -> Place {
     return Place(clip_position(world_position(vertex, instance)));
 }
 
-struct Identified {
-    @builtin(position) @invariant position: vec4<f32>,
-    @location(0) @interpolate(flat, either) id: u32,
-}
-
-// With the object's id.
-@vertex
-fn identified(vertex: Vertex, instance: Instance, @location(6) id: u32) -> Identified {
-    return Identified(clip_position(world_position(vertex, instance)), id);
-}
-
 fn unit(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
     let square = dot(v, v);
     // A NaN fails the comparison.
@@ -109,9 +98,14 @@ fn lit_color(surface: Surface, front: bool) -> vec3<f32> {
     return surface.color * (ambient + sun + head);
 }
 
+// An opaque colour, from linear light.
+fn opaque(linear: vec3<f32>) -> vec4<f32> {
+    return vec4<f32>(shown(linear), 1.0);
+}
+
 @fragment
 fn lit(surface: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return vec4<f32>(shown(lit_color(surface, front)), 1.0);
+    return opaque(lit_color(surface, front));
 }
 
 @group(1) @binding(0) var noise: texture_2d<f32>;
@@ -121,8 +115,7 @@ fn lit(surface: Surface, @builtin(front_facing) front: bool) -> @location(0) vec
 override look_ups: u32 = 1u;
 
 // The same, mottled. Each look-up says where the next one is.
-@fragment
-fn lit_by_look_ups(surface: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+fn mottled_color(surface: Surface, front: bool) -> vec3<f32> {
     // Not a whole number of times in a unit, lest what stands in rows looks all the same.
     var at = vec2<f32>(0.31, 0.37) * surface.world.xy + 0.23 * surface.world.zz;
     var sum = 0.0;
@@ -132,25 +125,24 @@ fn lit_by_look_ups(surface: Surface, @builtin(front_facing) front: bool) -> @loc
         sum += texel.z;
     }
     let mottled = 0.8 + 0.4 * sum / f32(look_ups);
-    return vec4<f32>(shown(lit_color(surface, front) * mottled), 1.0);
+    return lit_color(surface, front) * mottled;
+}
+
+@fragment
+fn lit_by_look_ups(surface: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return opaque(mottled_color(surface, front));
 }
 
 // The object's own colour.
 @fragment
 fn unlit(surface: Surface) -> @location(0) vec4<f32> {
-    return vec4<f32>(shown(surface.color), 1.0);
+    return opaque(surface.color);
 }
 
 // Nothing, into a target that must be there.
 @fragment
 fn nothing() -> @location(0) vec4<f32> {
     return vec4<f32>(0.0);
-}
-
-// The id, 16 bits a channel, into the item buffer.
-@fragment
-fn owner(surface: Identified) -> @location(1) vec2<u32> {
-    return vec2<u32>(surface.id & 0xffffu, surface.id >> 16u);
 }
 
 // One layer of many that are added up: black, red, orange, yellow, white.

@@ -155,9 +155,13 @@ pub fn read_texels(gpu: &Gpu, texture: &wgpu::Texture, view: &View, word: &str) 
     let viewport = view.viewport();
     let samples = view.samples();
     let (texture_type, sample) =
-        if samples > 1 { ("texture_multisampled_2d<f32>", "i32(k)") } else { ("texture_2d<f32>", "0") };
+        if samples > 1 { ("texture_multisampled_2d", "i32(k)") } else { ("texture_2d", "0") };
+    let (scalar, sample_type) = match texture.format().sample_type(None, None) {
+        Some(wgpu::TextureSampleType::Uint) => ("u32", wgpu::TextureSampleType::Uint),
+        _ => ("f32", wgpu::TextureSampleType::Float { filterable: false }),
+    };
     let source = format!(
-        "@group(0) @binding(0) var texture: {texture_type};
+        "@group(0) @binding(0) var texture: {texture_type}<{scalar}>;
          @group(0) @binding(1) var<storage, read_write> out: array<u32>;
          @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) at: vec3<u32>) {{
              if at.x >= {w}u || at.y >= {h}u {{ return; }}
@@ -189,7 +193,7 @@ pub fn read_texels(gpu: &Gpu, texture: &wgpu::Texture, view: &View, word: &str) 
             entry(
                 0,
                 wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    sample_type,
                     view_dimension: wgpu::TextureViewDimension::D2,
                     multisampled: samples > 1,
                 },

@@ -113,7 +113,7 @@ fn run(gpu: &Gpu, test: SweepTest, samples: u32, mistake: Option<Mistake>) -> Ou
 }
 
 /// Draws a frame; returns how many objects were drawn in each part of an earlier one.
-fn draw(
+pub fn draw(
     gpu: &Gpu,
     eye: &mut IndirectCuller,
     scene: &Scene,

@@ -2,6 +2,7 @@
 
 mod by_slot;
 mod frames;
+mod ids;
 mod looks;
 mod pixels;
 #[path = "../support/stage.rs"]

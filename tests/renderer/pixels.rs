@@ -40,6 +40,11 @@ impl Target {
         Self { color, depth }
     }
 
+    /// Width and height.
+    pub fn size(&self) -> [u32; 2] {
+        [self.color.width(), self.color.height()]
+    }
+
     /// Both attachments, cleared by each frame.
     pub fn frame_targets(&self) -> FrameTargets {
         let [color, depth] = [&self.color, &self.depth].map(|t| t.create_view(&Default::default()));

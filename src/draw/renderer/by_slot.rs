@@ -13,10 +13,10 @@ use hecs::{Entity, World};
 use rayon::prelude::*;
 use wgpu::{BufferBinding, Device, IndexFormat, Queue, RenderPass};
 
+use super::Renderer;
 use super::batch::Instance;
 use super::colors::linear;
-use super::pipelines::Source;
-use super::{Renderer, kinds};
+use super::kinds::{Kind, Source};
 use crate::Error;
 use crate::draw::Drawable;
 use crate::query::gpu::{BatchMesh, IndirectBatch, Mirrored};
@@ -198,7 +198,7 @@ impl Renderer {
         let Self { device, queue, pipelines, geometry, uniforms, frame, .. } = self;
         let Some(frame) = frame else { return };
         pass.set_bind_group(0, &pipelines.bind_by_slot(device, uniforms, by_slot.binding()), &[]);
-        for kind in kinds(frame.shading, self.color.is_some(), self.look_ups) {
+        for kind in Kind::of(frame.shading, self.color.is_some(), self.look_ups) {
             pipelines.set(pass, (device, queue), kind, Source::Slots, &frame.view);
             for batch in batches {
                 let Some(mesh) = by_slot.mesh(batch.batch) else { continue };

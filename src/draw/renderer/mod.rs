@@ -47,7 +47,7 @@
 //! | `geometry`, `normals` | meshes on the device |
 //! | `camera` | the view as the shaders read it |
 //! | `colors` | of objects, and formats of targets |
-//! | `pipelines`, `vertices` | made when first needed, and what they read |
+//! | `pipelines`, `kinds`, `vertices` | made when first needed; what each draws, and reads |
 //! | `look_ups` | a texture, where shading is to be dear |
 //! | `overlays` | boxes and polygons over a frame |
 
@@ -57,6 +57,7 @@ mod by_slot;
 mod camera;
 mod colors;
 mod geometry;
+mod kinds;
 mod look_ups;
 mod normals;
 mod overlays;
@@ -83,7 +84,8 @@ use batch::{Batch, Instance, Sorted};
 use camera::PackedCamera;
 use colors::{check, linear, takes_linear, tinted};
 use geometry::Geometry;
-use pipelines::{Kind, Pipelines, Source};
+use kinds::{Kind, Source};
+use pipelines::Pipelines;
 
 /// How surfaces look. Without a colour target there is only depth, whatever is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -176,8 +178,8 @@ impl Renderer {
 
     /// The same with an item buffer, which says who owns each sample: a second colour attachment, of the
     /// format [`Renderer::IDS`], as
-    /// [`GpuQueries::target_ids`](crate::query::gpu::GpuQueries::target_ids) wants it. All surfaces of a
-    /// call are drawn once more for it, with their depth alone.
+    /// [`GpuQueries::target_ids`](crate::query::gpu::GpuQueries::target_ids) wants it. The draws that write
+    /// the depth write it too, whatever the shading.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -330,9 +332,9 @@ impl Renderer {
             drawn.triangles += triangles * run.instances.len() as u64;
         }
         pass.set_bind_group(0, &self.bindings, &[]);
-        let kinds = kinds(frame.shading, self.color.is_some(), self.look_ups);
-        for kind in kinds.chain(self.has_ids.then_some(Kind::Ids)) {
-            self.pipelines.set(pass, (&self.device, &self.queue), kind, Source::Instances, &frame.view);
+        let source = if self.has_ids { Source::Identified } else { Source::Instances };
+        for kind in Kind::of(frame.shading, self.color.is_some(), self.look_ups) {
+            self.pipelines.set(pass, (&self.device, &self.queue), kind, source, &frame.view);
             for run in runs {
                 let group = self.geometry.group(run.group);
                 // The instances' buffer is moved to the first one, since a first instance other
@@ -340,7 +342,7 @@ impl Renderer {
                 let first = offset + u64::from(run.instances.start) * size_of::<Instance>() as u64;
                 pass.set_vertex_buffer(0, group.vertices.slice(..));
                 pass.set_vertex_buffer(1, buffer.slice(first..));
-                if let (Kind::Ids, Some((ids, offset))) = (kind, &ids) {
+                if let Some((ids, offset)) = &ids {
                     let first = offset + u64::from(run.instances.start) * size_of::<u32>() as u64;
                     pass.set_vertex_buffer(2, ids.slice(first..));
                 }
@@ -359,16 +361,4 @@ impl AddAssign for Drawn {
         self.instances += other.instances;
         self.draws += other.draws;
     }
-}
-
-/// What surfaces are drawn with, one after the other.
-fn kinds(shading: Shading, has_color: bool, look_ups: u32) -> impl Iterator<Item = Kind> {
-    let (first, second) = match shading {
-        _ if !has_color => (Kind::Depth, None),
-        Shading::Lit if look_ups > 0 => (Kind::LookUps(look_ups), None),
-        Shading::Lit => (Kind::Lit, None),
-        Shading::Unlit => (Kind::Unlit, None),
-        Shading::Overdraw => (Kind::Depth, Some(Kind::Layers)),
-    };
-    std::iter::once(first).chain(second)
 }

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable, cast_slice};
 use wgpu::RenderPass;
 
 use super::Renderer;
-use super::pipelines::{Kind, Source};
+use super::kinds::{Kind, Source};
 use crate::geom::{Aabb, ScreenOutline};
 
 /// What hides the edges of boxes.

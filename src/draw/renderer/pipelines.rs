@@ -4,17 +4,16 @@ use std::collections::HashMap;
 
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor,
-    BindGroupLayoutEntry, BindingResource, BindingType, BlendComponent, BlendFactor, BlendOperation,
-    BlendState, Buffer, BufferBinding, BufferBindingType, ColorTargetState, ColorWrites, CompareFunction,
-    DepthStencilState, Device, FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayout,
-    PipelineLayoutDescriptor, PrimitiveState, PrimitiveTopology, Queue, RenderPass, RenderPipeline,
-    RenderPipelineDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages,
-    TextureFormat, VertexBufferLayout, VertexState,
+    BindGroupLayoutEntry, BindingResource, BindingType, Buffer, BufferBinding, BufferBindingType,
+    ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, Device, FragmentState,
+    MultisampleState, PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor, PrimitiveState,
+    Queue, RenderPass, RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderModuleDescriptor,
+    ShaderSource, ShaderStages, TextureFormat, VertexState,
 };
 
 use super::Renderer;
+use super::kinds::{Depth, Kind, Recipe, Source};
 use super::look_ups::LookUps;
-use super::vertices::{BOXES, CORNERS, IDS, INSTANCES, SLOTS, VERTICES};
 use crate::geom::{DepthDirection, DepthFormat, View};
 
 /// The shaders' sources: surfaces, and what lies over them. WGSL has no includes: the parts are put
@@ -23,6 +22,7 @@ pub(super) const SOURCES: [&str; 2] = [
     concat!(
         include_str!("../../../shaders/shared/camera.wgsl"),
         include_str!("../../../shaders/surfaces.wgsl"),
+        include_str!("../../../shaders/with_id.wgsl"),
         include_str!("../../../shaders/by_slot.wgsl")
     ),
     concat!(
@@ -30,40 +30,6 @@ pub(super) const SOURCES: [&str; 2] = [
         include_str!("../../../shaders/overlays.wgsl")
     ),
 ];
-
-/// What a pipeline draws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Kind {
-    /// Surfaces, shaded.
-    Lit,
-    /// The same, after so many look-ups in a texture: 1 or more.
-    LookUps(u32),
-    /// Surfaces in their own colours.
-    Unlit,
-    /// Surfaces, into the depth alone.
-    Depth,
-    /// Whose the nearest surfaces are, into the item buffer alone.
-    Ids,
-    /// Every layer of surfaces, into the colour alone.
-    Layers,
-    /// Edges of boxes where nothing is nearer.
-    Edges,
-    /// Edges of boxes, whatever is nearer.
-    XRayEdges,
-    /// Polygons on the screen.
-    Polygons,
-    /// Lines on the screen.
-    Borders,
-}
-
-/// Where the transform and the colour of a surface's instance are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Source {
-    /// In a vertex buffer, of what one call draws.
-    Instances,
-    /// In a storage buffer, of all objects by slot; the vertex buffer has slots.
-    Slots,
-}
 
 /// What else it depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -143,7 +109,7 @@ impl Pipelines {
         }
         let pipeline = made.entry(key).or_insert_with(|| {
             let first = match source {
-                Source::Instances => &*camera,
+                Source::Instances | Source::Identified => &*camera,
                 Source::Slots => layout_by_slot(by_slot, device),
             };
             let groups: Vec<_> =
@@ -200,7 +166,8 @@ impl Key {
         layout: &PipelineLayout,
         (color, has_ids): (Option<TextureFormat>, bool),
     ) -> RenderPipeline {
-        let Recipe { stages, buffers, topology, blend, draws_color, depth } = self.kind.recipe(self.source);
+        let Recipe { stages, buffers, topology, blend, draws_color, draws_ids, depth } =
+            self.kind.recipe(self.source);
         let constants: Vec<(&str, f64)> = match self.kind {
             Kind::LookUps(count) => vec![("look_ups", count.into())],
             _ => Vec::new(),
@@ -209,7 +176,7 @@ impl Key {
         let mask = |writes| if writes { ColorWrites::ALL } else { ColorWrites::empty() };
         let write_mask = mask(draws_color);
         let color = color.map(|format| ColorTargetState { format, blend, write_mask });
-        let write_mask = mask(self.kind == Kind::Ids);
+        let write_mask = mask(draws_ids);
         let ids = ColorTargetState { format: Renderer::IDS, blend: None, write_mask };
         let targets = if has_ids { vec![color, Some(ids)] } else { vec![color] };
         let fragment = targets.iter().any(Option::is_some).then_some(FragmentState {
@@ -248,84 +215,6 @@ impl Key {
     }
 }
 
-/// What a kind needs.
-struct Recipe {
-    /// The vertex stage, and the fragment stage if there is a colour.
-    stages: [&'static str; 2],
-    buffers: Vec<VertexBufferLayout<'static>>,
-    topology: PrimitiveTopology,
-    blend: Option<BlendState>,
-    draws_color: bool,
-    depth: Depth,
-}
-
-/// What becomes of the depth. As near as what is there passes.
-#[derive(Clone, Copy, PartialEq)]
-enum Depth {
-    TestedAndWritten,
-    Tested,
-    Ignored,
-}
-
-impl Kind {
-    fn is_surface(self) -> bool {
-        !matches!(self, Self::Edges | Self::XRayEdges | Self::Polygons | Self::Borders)
-    }
-
-    fn recipe(self, source: Source) -> Recipe {
-        let of_slots = source == Source::Slots;
-        let surfaces = |vertex: [&'static str; 2], fragment| Recipe {
-            stages: [vertex[usize::from(of_slots)], fragment],
-            buffers: vec![VERTICES, if of_slots { SLOTS } else { INSTANCES }],
-            topology: PrimitiveTopology::TriangleList,
-            blend: None,
-            draws_color: true,
-            depth: Depth::TestedAndWritten,
-        };
-        let overlays = |stage, buffer, topology, depth| Recipe {
-            stages: [stage, "plain"],
-            buffers: vec![buffer],
-            topology,
-            blend: Some(BlendState::ALPHA_BLENDING),
-            draws_color: true,
-            depth,
-        };
-        let edges = |depth| overlays("box_edge", BOXES, PrimitiveTopology::LineList, depth);
-        let on_screen = |topology| overlays("corner", CORNERS, topology, Depth::Ignored);
-        match self {
-            Self::Lit => surfaces(SURFACE, "lit"),
-            Self::LookUps(_) => surfaces(SURFACE, "lit_by_look_ups"),
-            Self::Unlit => surfaces(SURFACE, "unlit"),
-            Self::Depth => Recipe { draws_color: false, ..surfaces(PLACE, "nothing") },
-            Self::Ids => Recipe {
-                stages: ["identified", "owner"],
-                buffers: vec![VERTICES, INSTANCES, IDS],
-                draws_color: false,
-                depth: Depth::Tested,
-                ..surfaces(PLACE, "owner")
-            },
-            Self::Layers => Recipe { blend: Some(ADDED), depth: Depth::Ignored, ..surfaces(PLACE, "layer") },
-            Self::Edges => edges(Depth::Tested),
-            Self::XRayEdges => edges(Depth::Ignored),
-            Self::Polygons => on_screen(PrimitiveTopology::TriangleList),
-            Self::Borders => on_screen(PrimitiveTopology::LineList),
-        }
-    }
-}
-
-/// Vertex stages, by [`Source`].
-const SURFACE: [&str; 2] = ["surface", "surface_by_slot"];
-const PLACE: [&str; 2] = ["place", "place_by_slot"];
-
-const ADDED: BlendState = {
-    let sum = BlendComponent {
-        src_factor: BlendFactor::One,
-        dst_factor: BlendFactor::One,
-        operation: BlendOperation::Add,
-    };
-    BlendState { color: sum, alpha: sum }
-};
-
 #[cfg(test)]
 mod tests {
     use wgpu::naga::ShaderStage;
@@ -336,12 +225,11 @@ mod tests {
 
     use super::*;
 
-    const KINDS: [Kind; 10] = [
+    const KINDS: [Kind; 9] = [
         Kind::Lit,
         Kind::LookUps(1),
         Kind::Unlit,
         Kind::Depth,
-        Kind::Ids,
         Kind::Layers,
         Kind::Edges,
         Kind::XRayEdges,
@@ -378,8 +266,8 @@ mod tests {
                 written.unwrap_or_else(|error| panic!("{}: {error}", entry.name));
             }
             let wanted = KINDS.iter().filter(|kind| kind.is_surface() == of_surfaces);
-            let both = [Source::Instances, Source::Slots];
-            let wanted = wanted.flat_map(|kind| both.map(|source| kind.recipe(source).stages));
+            let sources = [Source::Instances, Source::Identified, Source::Slots];
+            let wanted = wanted.flat_map(|kind| sources.map(|source| kind.recipe(source).stages));
             let wanted: Vec<_> = wanted.flatten().collect();
             let exists = |name: &str, stage| {
                 module.entry_points.iter().any(|entry| entry.name == name && entry.stage == stage)
