@@ -1,5 +1,5 @@
-// The same surfaces with an item buffer: every fragment says whose it is, beside its colour. So one depth test
-// decides on both.
+// The same surfaces with an item buffer: every fragment says whose it is, beside its colour. So one
+// depth test decides on both.
 
 // From the vertex stage to the fragment stage, beside the surface.
 struct Owner {

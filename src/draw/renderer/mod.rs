@@ -246,7 +246,8 @@ impl Renderer {
     /// [`Renderer::begin`], everybody is.
     ///
     /// Meshes that are new are uploaded. O(objects); no memory is allocated once a frame like this
-    /// one has been drawn. Sets pipeline, bind group 0 (and 1 for look-ups), vertex buffers 0 and 1 and the index buffer.
+    /// one has been drawn. Sets pipeline, bind group 0 (and 1 for look-ups), vertex buffers 0 and 1 (and 2 for
+    /// ids) and the index buffer.
     pub fn draw(
         &mut self,
         pass: &mut RenderPass<'static>,
