@@ -42,7 +42,7 @@ pub(crate) struct Blocks {
     /// What the last refresh of each block found.
     pub(super) news: Vec<News>,
     pub(super) free: FreeRuns,
-    /// By object slot.
+    /// By object slot; the last is none's, and no box.
     pub(super) known: Vec<Known>,
 }
 
@@ -179,8 +179,7 @@ impl Blocks {
     /// The newest boxes, to note many.
     #[inline(always)]
     pub(crate) fn newest(&mut self) -> Newest<'_> {
-        let (stale, any_stale) = self.stale.bytes_mut();
-        Newest { known: &mut self.known, stale, any_stale }
+        Newest { known: &mut self.known, stale: self.stale.bytes_mut() }
     }
 
     /// Adds an object to a run. Amortised O(1).
