@@ -193,6 +193,28 @@ impl Blocks {
         self.hulls[location / LANES].unite(&Hull::around(aabb));
     }
 
+    /// The same for an object that moves: it takes the lane behind the last of those, and what stood there
+    /// goes to the end.
+    pub(crate) fn push_moving(&mut self, run: &mut Run, node: u32, slot: u32, aabb: &Aabb) {
+        if run.len < LANES as u32 {
+            // Movers need not be together before there are two blocks.
+            return self.push(run, node, slot, aabb);
+        }
+        if run.active == run.len {
+            self.push(run, node, slot, aabb);
+        } else {
+            let (still, still_aabb) = self.item(run.location(run.active));
+            self.push(run, node, still, &still_aabb);
+            // The run may have gone elsewhere for it.
+            let (at, end) = (run.location(run.active), run.location(run.len - 1));
+            self.follow(at, end);
+            self.news[end / LANES].moved &= !(1 << (end % LANES));
+            self.put(at, slot, aabb);
+            self.measure(at / LANES);
+        }
+        run.active += 1;
+    }
+
     /// Takes an object out of its run; the last mover takes its lane, if it was one, and the last
     /// object of the run the lane that is left. Amortised O(1).
     pub(crate) fn remove(&mut self, run: &mut Run, node: u32, slot: u32) {
