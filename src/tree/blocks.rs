@@ -53,7 +53,7 @@ pub(super) struct News {
     pub(super) count: u16,
     /// It moved.
     pub(super) moved: u16,
-    /// It moved, and had the time before.
+    /// It moved, and had the time before, but is not in front of its run.
     pub(super) again: u16,
     /// Its node may not hold it any more.
     pub(super) out: u16,

@@ -18,7 +18,7 @@ use crate::query::software::prefetch;
 /// Blocks that are asked of memory ahead of their turn.
 const AHEAD: usize = 4;
 
-/// Arenas of fewer blocks are near enough as it is: about what the second cache holds.
+/// Arenas of fewer blocks are near enough for boxes not to be asked for: about what the second cache holds.
 const FAR: usize = 2048;
 
 /// Stale blocks from which they are shared among threads: below, waking another takes longer.
@@ -38,19 +38,29 @@ impl Tree {
         }
         let mut stale = std::mem::take(&mut self.stale);
         self.renew(&stale);
-        let mut node = NONE;
-        let mut moved = 0;
-        for block in stale.drain(..).map(|block| block as usize) {
-            if node != self.blocks.owner[block] {
-                self.note_moved(node, moved);
-                (node, moved) = (self.blocks.owner[block], 0);
-            }
-            moved += u32::from(self.blocks.news[block].count);
-            self.list_leavers(block, node);
-            self.gather_movers(block, node);
+        let mut touched = std::mem::take(&mut self.touched);
+        if touched.len() < stale.len() {
+            touched.resize(stale.len(), (NONE, 0));
         }
-        self.note_moved(node, moved);
-        self.stale = stale;
+        let (mut last, mut moved, mut count) = (NONE, 0, 0);
+        for &block in &stale {
+            let news = self.blocks.news[block as usize];
+            let node = self.blocks.owner[block as usize];
+            // Where a node's blocks end is hard to foretell: no branch.
+            count += usize::from(node != last);
+            moved = u32::from(news.count) + if node == last { moved } else { 0 };
+            last = node;
+            touched[count - 1] = (node, moved);
+            if news.out | news.again != 0 {
+                self.list_leavers(block as usize, node);
+                self.gather_movers(block as usize, node);
+            }
+        }
+        for &(node, moved) in &touched[..count] {
+            self.note_moved(node, moved);
+        }
+        stale.clear();
+        (self.stale, self.touched) = (stale, touched);
     }
 
     /// Renews blocks, given in their order.
@@ -62,7 +72,13 @@ impl Tree {
 
     fn list_leavers(&mut self, block: usize, node: u32) {
         let mut out = self.blocks.news[block].out;
+        if out == 0 {
+            return;
+        }
         let divided = !self.nodes.is_leaf(node);
+        // Whoever leaves is replaced by the last of the run.
+        let last = self.nodes.run[node as usize].used().end - 1;
+        ask_ahead(&self.blocks.blocks, 0, Some(&(last as u32)));
         let block = &self.blocks.blocks[block];
         while out != 0 {
             let lane = out.trailing_zeros() as usize % LANES;
@@ -76,24 +92,18 @@ impl Tree {
     /// Brings the objects that have moved twice in a row to the front of their run.
     fn gather_movers(&mut self, block: usize, node: u32) {
         let run = &mut self.nodes.run[node as usize];
+        // Others may have been brought there since the block was renewed.
+        let mut again = self.blocks.news[block].again & run.not_in_front(block);
         let first = run.index(block * LANES);
-        if run.len <= LANES as u32 || first + LANES as u32 <= run.active {
-            return;
-        }
-        let known = run.active.saturating_sub(first);
-        let mut again = self.blocks.news[block].again >> known;
         while again != 0 {
             let lane = again.trailing_zeros();
             again &= again - 1;
-            self.blocks.promote(run, first + known + lane);
+            self.blocks.promote(run, first + lane);
         }
     }
 
     /// Marks a node in which so many objects have moved.
     fn note_moved(&mut self, node: u32, moved: u32) {
-        if node == NONE {
-            return;
-        }
         self.touch(node, CONTENT);
         let n = node as usize;
         // A third at rest: the others gather anew.
@@ -184,8 +194,9 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
         let Stretch { first, stale, blocks, hulls, news } = stretch;
         let Around { nodes, owner, known, is_far } = *around;
         for (i, &block) in stale.iter().enumerate() {
+            ask_ahead(blocks, first, stale.get(i + if is_far { 2 * AHEAD } else { AHEAD }));
             if is_far {
-                ask_ahead(known, blocks, first, &stale[i..]);
+                ask_further(known, blocks, first, stale.get(i + AHEAD));
             }
             let at = block as usize - first;
             let node = owner[block as usize];
@@ -200,21 +211,27 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
                 (true, _) => found.out,
             };
             let count = found.moved.count_ones() as u16;
-            news[at] = News { count, moved: found.moved, again: found.moved & news[at].moved, out };
+            let again = found.moved & news[at].moved & nodes.run[n].not_in_front(block as usize);
+            news[at] = News { count, moved: found.moved, again, out };
         }
     }
 }
 
-/// Asks for what later blocks need. Two lines of memory would have to be waited for one after the
-/// other: that of the slots, then those of their boxes.
+/// Asks for a block that is to come.
 #[inline(always)]
-fn ask_ahead(known: &[Words], blocks: &[Block], first: usize, stale: &[u32]) {
-    if let Some(&later) = stale.get(2 * AHEAD) {
+fn ask_ahead(blocks: &[Block], first: usize, later: Option<&u32>) {
+    if let Some(&later) = later {
         let block = &blocks[later as usize - first];
         prefetch(&block.slots);
         block.min.iter().chain(&block.max).for_each(prefetch);
     }
-    if let Some(&later) = stale.get(AHEAD) {
+}
+
+/// Asks for the boxes of a block that has been asked for: otherwise two lines of memory would have to be
+/// waited for one after the other, that of the slots, then those of their boxes.
+#[inline(always)]
+fn ask_further(known: &[Words], blocks: &[Block], first: usize, later: Option<&u32>) {
+    if let Some(&later) = later {
         for &slot in &blocks[later as usize - first].slots {
             prefetch(known.get(slot as usize).unwrap_or(&Words::NOTHING));
         }
