@@ -68,10 +68,21 @@ type Known = Words;
 pub(crate) struct Newest<'a> {
     known: &'a mut [Known],
     stale: &'a mut [u8],
-    any_stale: &'a mut bool,
 }
 
 impl Newest<'_> {
+    /// Slots that there may be.
+    #[inline(always)]
+    pub(crate) fn len(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Those below a slot.
+    #[inline(always)]
+    pub(crate) fn up_to(self, slot: usize) -> Self {
+        Self { known: &mut self.known[..slot], ..self }
+    }
+
     /// Notes the new box of an object that has a lane; false for another one. O(1).
     #[inline(always)]
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) -> bool {
@@ -80,7 +91,6 @@ impl Newest<'_> {
         let Some(stale) = self.stale.get_mut(known.location as usize / LANES) else { return false };
         known.aabb = *aabb;
         *stale = 1;
-        *self.any_stale = true;
         true
     }
 }
@@ -136,8 +146,8 @@ impl Blocks {
     /// Takes an object's box; its lane is given later.
     pub(crate) fn announce(&mut self, slot: u32, aabb: &Aabb) {
         let s = slot as usize;
-        if s >= self.known.len() {
-            grow(&mut self.known, s + 1, Known::NOTHING);
+        if s + 1 >= self.known.len() {
+            grow(&mut self.known, s + 2, Known::NOTHING);
         }
         self.known[s] = Known::new(aabb, WAITING);
     }
