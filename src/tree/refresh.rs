@@ -282,6 +282,26 @@ mod tests {
     }
 
     #[test]
+    fn who_comes_on_the_move_stands_in_front() {
+        let mut tree = Tree::new(TreeConfig::default());
+        (0..32).for_each(|slot| tree.insert(slot, &at(slot, 0.0)));
+        tree.update();
+        for slot in 32..70 {
+            tree.blocks.announce(slot, &at(slot, 0.0));
+            tree.blocks.push_moving(&mut tree.nodes.run[0], 0, slot, &at(slot, 0.0));
+        }
+        let run = tree.nodes.run[0];
+        assert_eq!((run.active, run.len), (38, 70));
+        assert_eq!(front(&tree, 38), (32..70).collect::<Vec<_>>());
+        let all = tree.own_objects(tree.root()).map(|(slot, aabb)| (aabb, tree.aabb_of(slot)));
+        let around = all.fold(Aabb::EMPTY, |around, (held, known)| {
+            assert_eq!(Some(held), known);
+            around.union(&held)
+        });
+        assert_eq!(tree.blocks.around(run), around);
+    }
+
+    #[test]
     fn movers_gather_at_the_front_of_their_run() {
         let mut tree = Tree::new(TreeConfig::default());
         (0..300).for_each(|slot| tree.insert(slot, &at(slot, 0.0)));
