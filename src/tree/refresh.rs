@@ -18,7 +18,7 @@ use crate::query::software::prefetch;
 /// Blocks that are asked of memory ahead of their turn.
 const AHEAD: usize = 4;
 
-/// Arenas of fewer blocks are near enough for boxes not to be asked for: about what the second cache holds.
+/// Arenas of fewer blocks are near enough as it is: about what the second cache holds.
 const FAR: usize = 2048;
 
 /// Stale blocks from which they are shared among threads: below, waking another takes longer.
@@ -194,8 +194,8 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
         let Stretch { first, stale, blocks, hulls, news } = stretch;
         let Around { nodes, owner, known, is_far } = *around;
         for (i, &block) in stale.iter().enumerate() {
-            ask_ahead(blocks, first, stale.get(i + if is_far { 2 * AHEAD } else { AHEAD }));
             if is_far {
+                ask_ahead(blocks, first, stale.get(i + 2 * AHEAD));
                 ask_further(known, blocks, first, stale.get(i + AHEAD));
             }
             let at = block as usize - first;
