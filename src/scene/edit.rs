@@ -2,13 +2,15 @@
 
 use glam::Vec4;
 use hecs::Entity;
+use pulp::NullaryFnOnce;
 
 use super::Scene;
 use super::components::Traits;
 use super::object::ObjectId;
-use super::objects::Place;
+use super::objects::{Place, Plain};
 use super::tape::SceneEdit;
 use crate::geom::Aabb;
+use crate::tree::Newest;
 
 impl Scene {
     /// Adds an object, without an entity. Its box may be bad: then it is drawn always.
@@ -47,11 +49,15 @@ impl Scene {
         if self.tape.is_some() {
             return moved.next();
         }
-        let (objects, mut newest) = (self.objects.plain(), self.tree.newest());
-        moved.find(|(id, bounds)| {
-            let plain = objects.has(*id) && is_surely_valid(bounds);
-            !(plain && newest.set(id.slot() as u32, bounds))
-        })
+        if moved.size_hint().1 == Some(0) {
+            return None;
+        }
+        let take = TakePlain { moved, objects: self.objects.plain(), newest: self.tree.newest() };
+        #[cfg(target_arch = "x86_64")]
+        if let Some(wide) = pulp::x86::V3::try_new() {
+            return wide.vectorize(take);
+        }
+        take.call()
     }
 
     /// Changes an object's optional components; false if the handle is no longer valid. O(depth).
@@ -127,10 +133,33 @@ impl Scene {
     }
 }
 
+/// The taking of plain objects, to be compiled for each kind of registers.
+struct TakePlain<'a, I> {
+    moved: &'a mut I,
+    objects: Plain<'a>,
+    newest: Newest<'a>,
+}
+
+impl<I: Iterator<Item = (ObjectId, Aabb)>> NullaryFnOnce for TakePlain<'_, I> {
+    type Output = Option<(ObjectId, Aabb)>;
+
+    #[inline(always)]
+    fn call(self) -> Option<(ObjectId, Aabb)> {
+        let Self { moved, objects, newest } = self;
+        // One length for both: a slot is compared with it once.
+        let slots = objects.len().min(newest.len());
+        let (objects, mut newest) = (objects.up_to(slots), newest.up_to(slots));
+        moved.find(|(id, bounds)| {
+            let plain = objects.has(*id) && is_surely_valid(bounds);
+            !(plain && newest.set(id.slot() as u32, bounds))
+        })
+    }
+}
+
 /// Whether a box is certainly valid, without a branch: its size is neither NaN, negative nor
 /// infinite, so that its corners are finite and in order. A box larger than f32 can say is not
 /// certain.
-#[inline]
+#[inline(always)]
 fn is_surely_valid(Aabb { min, max }: &Aabb) -> bool {
     // x is there twice, so that all lanes are of use.
     let size = Vec4::new(max.x, max.x, max.y, max.z) - Vec4::new(min.x, min.x, min.y, min.z);

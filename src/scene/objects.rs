@@ -60,6 +60,18 @@ pub(crate) struct Objects {
 pub(crate) struct Plain<'a>(&'a [u32]);
 
 impl Plain<'_> {
+    /// Slots that there are.
+    #[inline(always)]
+    pub(crate) fn len(self) -> usize {
+        self.0.len()
+    }
+
+    /// Those below a slot.
+    #[inline(always)]
+    pub(crate) fn up_to(self, slot: usize) -> Self {
+        Self(&self.0[..slot])
+    }
+
     /// Whether a handle is that of one of them.
     #[inline]
     pub(crate) fn has(self, id: ObjectId) -> bool {

@@ -42,7 +42,7 @@ pub(crate) struct Blocks {
     /// What the last refresh of each block found.
     pub(super) news: Vec<News>,
     pub(super) free: FreeRuns,
-    /// By object slot.
+    /// By object slot; the last is none's, and no box.
     pub(super) known: Vec<Known>,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct News {
     pub(super) count: u16,
     /// It moved.
     pub(super) moved: u16,
-    /// It moved, and had the time before.
+    /// It moved, and had the time before, but is not in front of its run.
     pub(super) again: u16,
     /// Its node may not hold it any more.
     pub(super) out: u16,
@@ -68,10 +68,21 @@ type Known = Words;
 pub(crate) struct Newest<'a> {
     known: &'a mut [Known],
     stale: &'a mut [u8],
-    any_stale: &'a mut bool,
 }
 
 impl Newest<'_> {
+    /// Slots that there may be.
+    #[inline(always)]
+    pub(crate) fn len(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Those below a slot.
+    #[inline(always)]
+    pub(crate) fn up_to(self, slot: usize) -> Self {
+        Self { known: &mut self.known[..slot], ..self }
+    }
+
     /// Notes the new box of an object that has a lane; false for another one. O(1).
     #[inline(always)]
     pub(crate) fn set(&mut self, slot: u32, aabb: &Aabb) -> bool {
@@ -80,7 +91,6 @@ impl Newest<'_> {
         let Some(stale) = self.stale.get_mut(known.location as usize / LANES) else { return false };
         known.aabb = *aabb;
         *stale = 1;
-        *self.any_stale = true;
         true
     }
 }
@@ -136,8 +146,8 @@ impl Blocks {
     /// Takes an object's box; its lane is given later.
     pub(crate) fn announce(&mut self, slot: u32, aabb: &Aabb) {
         let s = slot as usize;
-        if s >= self.known.len() {
-            grow(&mut self.known, s + 1, Known::NOTHING);
+        if s + 1 >= self.known.len() {
+            grow(&mut self.known, s + 2, Known::NOTHING);
         }
         self.known[s] = Known::new(aabb, WAITING);
     }
@@ -179,8 +189,7 @@ impl Blocks {
     /// The newest boxes, to note many.
     #[inline(always)]
     pub(crate) fn newest(&mut self) -> Newest<'_> {
-        let (stale, any_stale) = self.stale.bytes_mut();
-        Newest { known: &mut self.known, stale, any_stale }
+        Newest { known: &mut self.known, stale: self.stale.bytes_mut() }
     }
 
     /// Adds an object to a run. Amortised O(1).
@@ -192,6 +201,28 @@ impl Blocks {
         run.len += 1;
         self.put(location, slot, aabb);
         self.hulls[location / LANES].unite(&Hull::around(aabb));
+    }
+
+    /// The same for an object that moves: it takes the lane behind the last of those, and what stood there
+    /// goes to the end.
+    pub(crate) fn push_moving(&mut self, run: &mut Run, node: u32, slot: u32, aabb: &Aabb) {
+        if run.len < LANES as u32 {
+            // Movers need not be together before there are two blocks.
+            return self.push(run, node, slot, aabb);
+        }
+        if run.active == run.len {
+            self.push(run, node, slot, aabb);
+        } else {
+            let (still, still_aabb) = self.item(run.location(run.active));
+            self.push(run, node, still, &still_aabb);
+            // The run may have gone elsewhere for it.
+            let (at, end) = (run.location(run.active), run.location(run.len - 1));
+            self.follow(at, end);
+            self.news[end / LANES].moved &= !(1 << (end % LANES));
+            self.put(at, slot, aabb);
+            self.measure(at / LANES);
+        }
+        run.active += 1;
     }
 
     /// Takes an object out of its run; the last mover takes its lane, if it was one, and the last

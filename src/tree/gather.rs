@@ -9,7 +9,7 @@ use glam::{Mat4, Vec3, Vec4};
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::V4;
 #[cfg(target_arch = "x86_64")]
-use pulp::{cast, f32x16};
+use pulp::{cast, f32x8, f32x16};
 
 use super::block::{Block, LANES};
 use super::hull::Hull;
@@ -36,7 +36,15 @@ impl Words {
         Self { aabb: *aabb, location, tag: 0 }
     }
 
-    /// Half of the words: one load, for they are in their order.
+    /// All words: one load, for they are in their order.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn all(&self) -> [f32; 8] {
+        let Self { aabb: Aabb { min, max }, location, tag } = *self;
+        [min.x, min.y, min.z, max.x, max.y, max.z, f32::from_bits(location), f32::from_bits(tag)]
+    }
+
+    /// Half of the words: one load again.
     #[inline(always)]
     fn half(&self, half: usize) -> [f32; 4] {
         let Self { aabb: Aabb { min, max }, location, tag } = *self;
@@ -64,9 +72,14 @@ pub(super) struct Found {
     pub(super) out: u16,
 }
 
+impl Found {
+    /// Of a block in which there is nothing.
+    pub(super) const NOTHING: Self = Self { hull: Hull::EMPTY, moved: 0, out: 0 };
+}
+
 /// Renews blocks with one kind of registers.
 pub(super) trait Gather: Copy {
-    /// Takes the boxes of all lanes anew, each from its slot's words.
+    /// Takes the boxes of all lanes anew, each from its slot's words; the last of these are nobody's.
     fn renew(self, block: &mut Block, newest: &[Words], site: &Site) -> Found;
 }
 
@@ -75,14 +88,14 @@ pub(super) trait Gather: Copy {
 impl Gather for V4 {
     #[inline(always)]
     fn renew(self, block: &mut Block, newest: &[Words], site: &Site) -> Found {
+        let Some(last) = newest.len().checked_sub(1) else { return Found::NOTHING };
         let mut boxes = [&Words::NOTHING; LANES];
         for (words, &slot) in boxes.iter_mut().zip(&block.slots) {
-            *words = newest.get(slot as usize).unwrap_or(&Words::NOTHING);
+            // Lanes without an object get the last: a minimum is less than a look whether there is one.
+            *words = &newest[(slot as usize).min(last)];
         }
-        let (near, far) = (halves(self, &boxes, 0), halves(self, &boxes, 1));
-        let ([x, y], [z, far_x], [far_y, far_z]) =
-            (lower(self, &near), upper(self, &near), lower(self, &far));
-        let (min, max) = ([x, y, z], [far_x, far_y, far_z]);
+        let pairs = pairs(self, &boxes);
+        let (min, max) = rows(self, &pairs);
         let (mut moved, mut out) = (0, 0);
         for axis in 0..3 {
             let (low, high) = (min[axis], max[axis]);
@@ -90,7 +103,7 @@ impl Gather for V4 {
             moved |= self.cmp_not_eq_f32x16(high, cast(block.max[axis])).0;
             (block.min[axis], block.max[axis]) = (cast(low), cast(high));
         }
-        let hull = hull(self, &near, &far);
+        let hull = hull(self, &pairs);
         // Most blocks lie in their cell as a whole, and most cells are across nothing.
         if !hull.is_within(&Hull::around(&site.cell)) {
             for axis in 0..3 {
@@ -104,75 +117,76 @@ impl Gather for V4 {
                 out |= self.cmp_ge_f32x16(min[axis], plane).0 | self.cmp_le_f32x16(max[axis], plane).0;
             }
         }
-        out &= self.cmp_lt_f32x16(x, self.splat_f32x16(f32::INFINITY)).0;
+        out &= self.cmp_lt_f32x16(min[0], self.splat_f32x16(f32::INFINITY)).0;
         Found { hull, moved, out }
     }
 }
 
-/// Half of each box, four boxes a register, from objects four lanes apart: so rows come out in order.
+/// Two boxes a register, four lanes apart: so rows come out in order.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn halves(simd: V4, boxes: &[&Words; LANES], half: usize) -> [f32x16; 4] {
-    let mut all = [simd.splat_f32x16(0.0); 4];
-    for (i, four) in all.iter_mut().enumerate() {
-        let f = simd.avx512f;
-        let sum = f._mm512_castps128_ps512(cast(boxes[i].half(half)));
-        let sum = f._mm512_insertf32x4::<1>(sum, cast(boxes[i + 4].half(half)));
-        let sum = f._mm512_insertf32x4::<2>(sum, cast(boxes[i + 8].half(half)));
-        *four = cast(f._mm512_insertf32x4::<3>(sum, cast(boxes[i + 12].half(half))));
+fn pairs(simd: V4, boxes: &[&Words; LANES]) -> [f32x16; 8] {
+    let f = simd.avx512f;
+    let mut all = [simd.splat_f32x16(0.0); 8];
+    for (i, pair) in all.iter_mut().enumerate() {
+        let first = i / 4 * 8 + i % 4;
+        let (low, high): (f32x8, f32x8) = (cast(boxes[first].all()), cast(boxes[first + 4].all()));
+        *pair = cast(f._mm512_insertf64x4::<1>(f._mm512_castpd256_pd512(cast(low)), cast(high)));
     }
     all
 }
 
-/// The first two rows of four registers whose quarters are columns of four.
+/// The rows of least and of greatest coordinates.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn lower(simd: V4, fours: &[f32x16; 4]) -> [f32x16; 2] {
+fn rows(simd: V4, pairs: &[f32x16; 8]) -> ([f32x16; 3], [f32x16; 3]) {
     let f = simd.avx512f;
-    let ab = f._mm512_castps_pd(f._mm512_unpacklo_ps(cast(fours[0]), cast(fours[1])));
-    let cd = f._mm512_castps_pd(f._mm512_unpacklo_ps(cast(fours[2]), cast(fours[3])));
-    [cast(f._mm512_unpacklo_pd(ab, cd)), cast(f._mm512_unpackhi_pd(ab, cd))]
+    // In each quarter of a register a word of four boxes; the quarters by turns of the first half of the
+    // words and of the second.
+    let (a, b) = (columns(simd, pairs, 0), columns(simd, pairs, 4));
+    let (mut low, mut high) = ([simd.splat_f32x16(0.0); 4], [simd.splat_f32x16(0.0); 4]);
+    for i in 0..4 {
+        low[i] = cast(f._mm512_shuffle_f32x4::<0b10_00_10_00>(cast(a[i]), cast(b[i])));
+        high[i] = cast(f._mm512_shuffle_f32x4::<0b11_01_11_01>(cast(a[i]), cast(b[i])));
+    }
+    ([low[0], low[1], low[2]], [low[3], high[0], high[1]])
 }
 
-/// The last two rows.
+/// Four registers from the given one on, turned by fours.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn upper(simd: V4, fours: &[f32x16; 4]) -> [f32x16; 2] {
+fn columns(simd: V4, pairs: &[f32x16; 8], from: usize) -> [f32x16; 4] {
     let f = simd.avx512f;
-    let ab = f._mm512_castps_pd(f._mm512_unpackhi_ps(cast(fours[0]), cast(fours[1])));
-    let cd = f._mm512_castps_pd(f._mm512_unpackhi_ps(cast(fours[2]), cast(fours[3])));
-    [cast(f._mm512_unpacklo_pd(ab, cd)), cast(f._mm512_unpackhi_pd(ab, cd))]
+    let (a, b) = (cast(pairs[from]), cast(pairs[from + 1]));
+    let (c, d) = (cast(pairs[from + 2]), cast(pairs[from + 3]));
+    let (ab, cd) =
+        (f._mm512_castps_pd(f._mm512_unpacklo_ps(a, b)), f._mm512_castps_pd(f._mm512_unpacklo_ps(c, d)));
+    let (upper_ab, upper_cd) =
+        (f._mm512_castps_pd(f._mm512_unpackhi_ps(a, b)), f._mm512_castps_pd(f._mm512_unpackhi_ps(c, d)));
+    [
+        cast(f._mm512_unpacklo_pd(ab, cd)),
+        cast(f._mm512_unpackhi_pd(ab, cd)),
+        cast(f._mm512_unpacklo_pd(upper_ab, upper_cd)),
+        cast(f._mm512_unpackhi_pd(upper_ab, upper_cd)),
+    ]
 }
 
 /// The box around all boxes: of columns first, and across a register once at the end.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn hull(simd: V4, near: &[f32x16; 4], far: &[f32x16; 4]) -> Hull {
+fn hull(simd: V4, pairs: &[f32x16; 8]) -> Hull {
     let f = simd.avx512f;
-    let least = f._mm512_min_ps(
-        f._mm512_min_ps(cast(near[0]), cast(near[1])),
-        f._mm512_min_ps(cast(near[2]), cast(near[3])),
-    );
-    let least: [f32; 4] = {
-        let (a, b) = (f._mm512_extractf32x4_ps::<0>(least), f._mm512_extractf32x4_ps::<1>(least));
-        let (c, d) = (f._mm512_extractf32x4_ps::<2>(least), f._mm512_extractf32x4_ps::<3>(least));
-        cast(simd.sse._mm_min_ps(simd.sse._mm_min_ps(a, b), simd.sse._mm_min_ps(c, d)))
-    };
-    let ([.., far_x], [far_y, far_z, ..]) = (greatest(simd, near), greatest(simd, far));
-    Hull::around(&Aabb::new([least[0], least[1], least[2]].into(), [far_x, far_y, far_z].into()))
-}
-
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn greatest(simd: V4, fours: &[f32x16; 4]) -> [f32; 4] {
-    let f = simd.avx512f;
-    let all = f._mm512_max_ps(
-        f._mm512_max_ps(cast(fours[0]), cast(fours[1])),
-        f._mm512_max_ps(cast(fours[2]), cast(fours[3])),
-    );
-    let (a, b) = (f._mm512_extractf32x4_ps::<0>(all), f._mm512_extractf32x4_ps::<1>(all));
-    let (c, d) = (f._mm512_extractf32x4_ps::<2>(all), f._mm512_extractf32x4_ps::<3>(all));
-    cast(simd.sse._mm_max_ps(simd.sse._mm_max_ps(a, b), simd.sse._mm_max_ps(c, d)))
+    let (mut least, mut most) = (cast(pairs[0]), cast(pairs[0]));
+    for &pair in &pairs[1..] {
+        least = f._mm512_min_ps(least, cast(pair));
+        most = f._mm512_max_ps(most, cast(pair));
+    }
+    let [a, b]: [[f32; 8]; 2] = cast(least);
+    let [c, d]: [[f32; 8]; 2] = cast(most);
+    let least: [f32; 8] = cast(simd.avx._mm256_min_ps(cast(a), cast(b)));
+    let most: [f32; 8] = cast(simd.avx._mm256_max_ps(cast(c), cast(d)));
+    let ([min_x, min_y, min_z, ..], [_, _, _, max_x, max_y, max_z, ..]) = (least, most);
+    Hull::around(&Aabb::new([min_x, min_y, min_z].into(), [max_x, max_y, max_z].into()))
 }
 
 /// Registers of four, which every machine has.
@@ -236,6 +250,7 @@ mod tests {
             newest.push(Words::new(&Aabb::new(old.min + shift, old.max + 2.0 * shift), 7));
         }
         newest.reverse();
+        newest.push(Words::NOTHING);
         let cell = Aabb::new(Vec3::splat(-1.0), Vec3::new(6.0, 9.0, 12.0));
         (block, newest, Site { cell, straddled: Vec3::new(f32::NAN, 5.0, f32::NAN) })
     }

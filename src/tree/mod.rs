@@ -39,7 +39,7 @@ pub use visit::Walk;
 
 use crate::geom::Aabb;
 use blocks::Blocks;
-pub(crate) use blocks::grow;
+pub(crate) use blocks::{Newest, grow};
 use node::Nodes;
 use refit::Dirty;
 
@@ -72,6 +72,8 @@ pub struct Tree {
     tick: u32,
     /// Reused by each refresh: blocks in which objects have moved.
     stale: Vec<u32>,
+    /// Reused by each refresh: nodes of those blocks, and how many objects of each have moved.
+    touched: Vec<(u32, u32)>,
     /// Objects whose new box their node does not hold.
     leavers: Vec<u32>,
     /// Objects that have no node yet; some may have been removed since.
@@ -116,6 +118,7 @@ impl Tree {
             stats: TreeStats::default(),
             tick: 1,
             stale: Vec::new(),
+            touched: Vec::new(),
             leavers: Vec::new(),
             arrivals: Vec::new(),
             waiting: 0,

@@ -80,7 +80,9 @@ impl Tree {
                 }
             }
             self.nodes.below[at as usize] += 1;
-            self.descend(at, slot, &aabb);
+            let to = self.descend(at, &aabb);
+            self.blocks.push_moving(&mut self.nodes.run[to as usize], to, slot, &aabb);
+            self.arrive(to);
             self.stats.moves += 1;
         }
         self.leavers = leavers;
@@ -108,14 +110,17 @@ impl Tree {
             };
             self.hold_in_root(&aabb);
             self.nodes.below[0] += 1;
-            self.descend(0, slot, &aabb);
+            let to = self.descend(0, &aabb);
+            self.blocks.push(&mut self.nodes.run[to as usize], to, slot, &aabb);
+            self.arrive(to);
         }
         self.waiting = 0;
         self.arrivals = arrivals;
     }
 
-    /// Puts an object into the subtree of a node that holds it and has counted it already.
-    fn descend(&mut self, mut at: u32, slot: u32, aabb: &Aabb) {
+    /// Where an object belongs in the subtree of a node that holds it and has counted it already; it is
+    /// counted on the way.
+    fn descend(&mut self, mut at: u32, aabb: &Aabb) -> u32 {
         while !self.nodes.is_leaf(at) {
             let role = self.nodes.side(at, aabb);
             if role == Role::Straddle && self.config.straddlers == Straddlers::StayInParent {
@@ -124,9 +129,13 @@ impl Tree {
             at = self.nodes.child[at as usize] + role as u32 - Role::Low as u32;
             self.nodes.below[at as usize] += 1;
         }
-        self.blocks.push(&mut self.nodes.run[at as usize], at, slot, aabb);
-        self.touch(at, CONTENT | REGROUPED);
-        self.note_crowded(at);
+        at
+    }
+
+    /// Marks a node that an object has come to.
+    fn arrive(&mut self, node: u32) {
+        self.touch(node, CONTENT | REGROUPED);
+        self.note_crowded(node);
     }
 
     /// Lists a leaf for the next build once it has grown to the size from which one is tried.

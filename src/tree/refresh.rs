@@ -38,19 +38,29 @@ impl Tree {
         }
         let mut stale = std::mem::take(&mut self.stale);
         self.renew(&stale);
-        let mut node = NONE;
-        let mut moved = 0;
-        for block in stale.drain(..).map(|block| block as usize) {
-            if node != self.blocks.owner[block] {
-                self.note_moved(node, moved);
-                (node, moved) = (self.blocks.owner[block], 0);
-            }
-            moved += u32::from(self.blocks.news[block].count);
-            self.list_leavers(block, node);
-            self.gather_movers(block, node);
+        let mut touched = std::mem::take(&mut self.touched);
+        if touched.len() < stale.len() {
+            touched.resize(stale.len(), (NONE, 0));
         }
-        self.note_moved(node, moved);
-        self.stale = stale;
+        let (mut last, mut moved, mut count) = (NONE, 0, 0);
+        for &block in &stale {
+            let news = self.blocks.news[block as usize];
+            let node = self.blocks.owner[block as usize];
+            // Where a node's blocks end is hard to foretell: no branch.
+            count += usize::from(node != last);
+            moved = u32::from(news.count) + if node == last { moved } else { 0 };
+            last = node;
+            touched[count - 1] = (node, moved);
+            if news.out | news.again != 0 {
+                self.list_leavers(block as usize, node);
+                self.gather_movers(block as usize, node);
+            }
+        }
+        for &(node, moved) in &touched[..count] {
+            self.note_moved(node, moved);
+        }
+        stale.clear();
+        (self.stale, self.touched) = (stale, touched);
     }
 
     /// Renews blocks, given in their order.
@@ -62,7 +72,13 @@ impl Tree {
 
     fn list_leavers(&mut self, block: usize, node: u32) {
         let mut out = self.blocks.news[block].out;
+        if out == 0 {
+            return;
+        }
         let divided = !self.nodes.is_leaf(node);
+        // Whoever leaves is replaced by the last of the run.
+        let last = self.nodes.run[node as usize].used().end - 1;
+        ask_ahead(&self.blocks.blocks, 0, Some(&(last as u32)));
         let block = &self.blocks.blocks[block];
         while out != 0 {
             let lane = out.trailing_zeros() as usize % LANES;
@@ -76,24 +92,18 @@ impl Tree {
     /// Brings the objects that have moved twice in a row to the front of their run.
     fn gather_movers(&mut self, block: usize, node: u32) {
         let run = &mut self.nodes.run[node as usize];
+        // Others may have been brought there since the block was renewed.
+        let mut again = self.blocks.news[block].again & run.not_in_front(block);
         let first = run.index(block * LANES);
-        if run.len <= LANES as u32 || first + LANES as u32 <= run.active {
-            return;
-        }
-        let known = run.active.saturating_sub(first);
-        let mut again = self.blocks.news[block].again >> known;
         while again != 0 {
             let lane = again.trailing_zeros();
             again &= again - 1;
-            self.blocks.promote(run, first + known + lane);
+            self.blocks.promote(run, first + lane);
         }
     }
 
     /// Marks a node in which so many objects have moved.
     fn note_moved(&mut self, node: u32, moved: u32) {
-        if node == NONE {
-            return;
-        }
         self.touch(node, CONTENT);
         let n = node as usize;
         // A third at rest: the others gather anew.
@@ -185,7 +195,8 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
         let Around { nodes, owner, known, is_far } = *around;
         for (i, &block) in stale.iter().enumerate() {
             if is_far {
-                ask_ahead(known, blocks, first, &stale[i..]);
+                ask_ahead(blocks, first, stale.get(i + 2 * AHEAD));
+                ask_further(known, blocks, first, stale.get(i + AHEAD));
             }
             let at = block as usize - first;
             let node = owner[block as usize];
@@ -200,21 +211,27 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
                 (true, _) => found.out,
             };
             let count = found.moved.count_ones() as u16;
-            news[at] = News { count, moved: found.moved, again: found.moved & news[at].moved, out };
+            let again = found.moved & news[at].moved & nodes.run[n].not_in_front(block as usize);
+            news[at] = News { count, moved: found.moved, again, out };
         }
     }
 }
 
-/// Asks for what later blocks need. Two lines of memory would have to be waited for one after the
-/// other: that of the slots, then those of their boxes.
+/// Asks for a block that is to come.
 #[inline(always)]
-fn ask_ahead(known: &[Words], blocks: &[Block], first: usize, stale: &[u32]) {
-    if let Some(&later) = stale.get(2 * AHEAD) {
+fn ask_ahead(blocks: &[Block], first: usize, later: Option<&u32>) {
+    if let Some(&later) = later {
         let block = &blocks[later as usize - first];
         prefetch(&block.slots);
         block.min.iter().chain(&block.max).for_each(prefetch);
     }
-    if let Some(&later) = stale.get(AHEAD) {
+}
+
+/// Asks for the boxes of a block that has been asked for: otherwise two lines of memory would have to be
+/// waited for one after the other, that of the slots, then those of their boxes.
+#[inline(always)]
+fn ask_further(known: &[Words], blocks: &[Block], first: usize, later: Option<&u32>) {
+    if let Some(&later) = later {
         for &slot in &blocks[later as usize - first].slots {
             prefetch(known.get(slot as usize).unwrap_or(&Words::NOTHING));
         }
@@ -262,6 +279,26 @@ mod tests {
         tree.update();
         tree.validate().expect("a valid tree");
         assert_eq!(tree.aabb_of(39), Some(at(39, 0.2)));
+    }
+
+    #[test]
+    fn who_comes_on_the_move_stands_in_front() {
+        let mut tree = Tree::new(TreeConfig::default());
+        (0..32).for_each(|slot| tree.insert(slot, &at(slot, 0.0)));
+        tree.update();
+        for slot in 32..70 {
+            tree.blocks.announce(slot, &at(slot, 0.0));
+            tree.blocks.push_moving(&mut tree.nodes.run[0], 0, slot, &at(slot, 0.0));
+        }
+        let run = tree.nodes.run[0];
+        assert_eq!((run.active, run.len), (38, 70));
+        assert_eq!(front(&tree, 38), (32..70).collect::<Vec<_>>());
+        let all = tree.own_objects(tree.root()).map(|(slot, aabb)| (aabb, tree.aabb_of(slot)));
+        let around = all.fold(Aabb::EMPTY, |around, (held, known)| {
+            assert_eq!(Some(held), known);
+            around.union(&held)
+        });
+        assert_eq!(tree.blocks.around(run), around);
     }
 
     #[test]

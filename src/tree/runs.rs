@@ -61,6 +61,14 @@ impl Run {
         Self { first, ..self }
     }
 
+    /// A bit for each lane of one of its blocks that is not in front, with the objects that keep moving, but
+    /// should be if its object does; a run of one block has no front.
+    #[inline(always)]
+    pub(super) fn not_in_front(self, block: usize) -> u16 {
+        let in_front = self.active.saturating_sub(self.index(block * LANES));
+        if self.len <= LANES as u32 { 0 } else { u32::from(u16::MAX).unbounded_shl(in_front) as u16 }
+    }
+
     /// Where its object of this index is: block × 16 + lane.
     pub(super) fn location(self, index: u32) -> usize {
         self.first as usize * LANES + index as usize

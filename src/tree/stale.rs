@@ -11,15 +11,16 @@ const REGION: usize = 64;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stale {
     regions: Vec<[u8; REGION]>,
-    /// Whether there is any such block.
+    /// Whether there may be any such block.
     any: bool,
 }
 
 impl Stale {
-    /// The blocks' bytes, and the byte for all; whoever sets one of the former sets the latter.
+    /// The blocks' bytes, of which any may be set.
     #[inline(always)]
-    pub(super) fn bytes_mut(&mut self) -> (&mut [u8], &mut bool) {
-        (self.regions.as_flattened_mut(), &mut self.any)
+    pub(super) fn bytes_mut(&mut self) -> &mut [u8] {
+        self.any = true;
+        self.regions.as_flattened_mut()
     }
 
     /// Marks a block.

@@ -99,8 +99,14 @@ impl<F: FnMut(&Block, u16)> Visit<'_, F> {
         let run = self.tree.nodes.run[node as usize];
         let mut edges = [Edge::NONE; Planes::COUNT];
         let edges = self.planes.edges(crossed, &self.tree.nodes.bounds[node as usize], &mut edges);
+        // Nearly always: then there is less to be looked at for each block.
+        let single = edges.iter().all(|edge| edge.form.iter().all(|form| form.l.is_none()));
         for (block, held) in self.tree.blocks.of(run) {
-            let lanes = if crossed == 0 { held } else { held & !outside(simd, block, edges) };
+            let lanes = match (crossed, single) {
+                (0, _) => held,
+                (_, true) => held & !outside::<S, true>(simd, block, edges),
+                (_, false) => held & !outside::<S, false>(simd, block, edges),
+            };
             if lanes != 0 {
                 (self.found)(block, lanes);
             }
@@ -208,9 +214,10 @@ impl Edge {
     const NONE: Self = Self { form: [Form { u: 0.0, l: None, greatest: [false; 2] }; 3], outer: 0.0 };
 }
 
-/// The lanes of a block that are outside one of the planes.
+/// The lanes of a block that are outside one of the planes; `SINGLE`: of which each axis has a single
+/// product.
 #[inline(always)]
-fn outside<S: Simd>(simd: S, block: &Block, edges: &[Edge]) -> u16 {
+fn outside<S: Simd, const SINGLE: bool>(simd: S, block: &Block, edges: &[Edge]) -> u16 {
     let mut bits = 0;
     for i in 0..LANES / S::F32_LANES {
         let mut least = simd.splat_f32s(0.0);
@@ -220,7 +227,7 @@ fn outside<S: Simd>(simd: S, block: &Block, edges: &[Edge]) -> u16 {
                 let Form { u, l, greatest } = form[axis];
                 let far = if greatest[0] { &block.max[axis] } else { &block.min[axis] };
                 terms[axis] = simd.mul_f32s(simd.splat_f32s(u), S::as_simd_f32s(far).0[i]);
-                if let Some(l) = l {
+                if let Some(l) = l.filter(|_| !SINGLE) {
                     let far = if greatest[1] { &block.max[axis] } else { &block.min[axis] };
                     let other = simd.mul_f32s(simd.splat_f32s(l), S::as_simd_f32s(far).0[i]);
                     terms[axis] = simd.max_f32s(terms[axis], other);
