@@ -29,13 +29,9 @@ fn enclose(
     let link = links[i];
     var screen: Screen;
     var verdict = OUTSIDE;
-    if (box.kind & BOXED) != 0u {
-        verdict = SEEN;
-        if view.askable != 0u {
-            verdict = place(box, Room(3.0, 100.0), &screen);
-        }
-    }
-    if (box.kind & ALWAYS) != 0u {
+    if (box.kind & view.askable) != 0u {
+        verdict = place(box, Room(3.0, 100.0), &screen);
+    } else if (box.kind & (BOXED | ALWAYS)) != 0u {
         verdict = SEEN;
     }
     var rect = vec4<f32>(0.0);

@@ -24,7 +24,8 @@ struct View {
     cleared: f32,
     // Added to nearness.
     slack: f32,
-    // 0 if no box can be asked about.
+    // The kinds of boxes that can be asked about: BOXED, or none. As a mask it is compared with what is known
+    // of a box: a branch on it alone makes Mesa's lavapipe compile the shader anew for each view.
     askable: u32,
     unused: u32,
 }

@@ -65,13 +65,9 @@ fn project(
     var proxy: Proxy;
     var screen: Screen;
     var verdict = OUTSIDE;
-    if (box.kind & BOXED) != 0u {
-        verdict = SEEN;
-        if view.askable != 0u {
-            verdict = place(box, Room(1.0, 0.0), &screen);
-        }
-    }
-    if (box.kind & ALWAYS) != 0u {
+    if (box.kind & view.askable) != 0u {
+        verdict = place(box, Room(1.0, 0.0), &screen);
+    } else if (box.kind & (BOXED | ALWAYS)) != 0u {
         verdict = SEEN;
     }
     let rect = pixels(&screen);

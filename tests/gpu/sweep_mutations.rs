@@ -76,7 +76,7 @@ fn wrong_sweeps_are_found_out() {
         ("link.enter, link.skip", "link.skip, link.skip"),
         ("boxes[i]", "boxes[i / 2u]"),
         ("max(screen.nearest + screen.depth_error, view.cleared)", "view.cleared"),
-        ("(box.kind & BOXED) != 0u", "(box.kind & BOXED) == 0u"),
+        ("(box.kind & view.askable) != 0u", "(box.kind & view.askable) == 0u"),
     ];
     const ENLIST: &[Mutation] = &[
         ("if i < arrayLength(&groups)", "if i + 1u < arrayLength(&groups)"),

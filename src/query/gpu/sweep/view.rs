@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, DVec3};
 
-use super::boxes::FARTHEST;
+use super::boxes::{BOXED, FARTHEST};
 use crate::geom::{DepthDirection, DepthFormat, SILHOUETTES, View};
 
 /// The uniforms of a view.
@@ -66,7 +66,7 @@ impl PackedView {
             step,
             cleared: view.depth().cleared(),
             slack,
-            askable: u32::from(is_askable(view)),
+            askable: if is_askable(view) { BOXED } else { 0 },
             unused: 0,
         }
     }
