@@ -28,12 +28,7 @@ fn enclose(
     let box = boxes[i];
     let link = links[i];
     var screen: Screen;
-    var verdict = OUTSIDE;
-    if (box.kind & view.askable) != 0u {
-        verdict = place(box, Room(3.0, 100.0), &screen);
-    } else if (box.kind & (BOXED | ALWAYS)) != 0u {
-        verdict = SEEN;
-    }
+    var verdict = known(box, Room(3.0, 100.0), &screen);
     var rect = vec4<f32>(0.0);
     var nearest = FARTHEST;
     if verdict == HIDDEN {

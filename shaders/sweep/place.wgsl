@@ -161,6 +161,14 @@ fn place(box: Box, room: Room, screen: ptr<function, Screen>) -> u32 {
     return HIDDEN;
 }
 
+// What is known of a box before any test; its corners are projected if it is HIDDEN.
+fn known(box: Box, room: Room, screen: ptr<function, Screen>) -> u32 {
+    if (box.kind & view.askable) != 0u {
+        return place(box, room, screen);
+    }
+    return select(OUTSIDE, SEEN, (box.kind & (BOXED | ALWAYS)) != 0u);
+}
+
 // The pixels whose centres lie within reach, clipped to the viewport: x0, y0, x1, y1, half open.
 fn pixels(screen: ptr<function, Screen>) -> vec4<f32> {
     let low = clamp(ceil((*screen).low - (*screen).reach - 0.5), vec2<f32>(0.0), view.size);

@@ -64,12 +64,7 @@ fn project(
     let box = boxes[asked[index]];
     var proxy: Proxy;
     var screen: Screen;
-    var verdict = OUTSIDE;
-    if (box.kind & view.askable) != 0u {
-        verdict = place(box, Room(1.0, 0.0), &screen);
-    } else if (box.kind & (BOXED | ALWAYS)) != 0u {
-        verdict = SEEN;
-    }
+    var verdict = known(box, Room(1.0, 0.0), &screen);
     let rect = pixels(&screen);
     if verdict == HIDDEN && any(rect.xy >= rect.zw) {
         verdict = OUTSIDE;

@@ -78,7 +78,7 @@ impl Tree {
         let divided = !self.nodes.is_leaf(node);
         // Whoever leaves is replaced by the last of the run.
         let last = self.nodes.run[node as usize].used().end - 1;
-        ask_ahead(&self.blocks.blocks, 0, Some(&(last as u32)));
+        ask_for(&self.blocks.blocks[last]);
         let block = &self.blocks.blocks[block];
         while out != 0 {
             let lane = out.trailing_zeros() as usize % LANES;
@@ -195,8 +195,13 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
         let Around { nodes, owner, known, is_far } = *around;
         for (i, &block) in stale.iter().enumerate() {
             if is_far {
-                ask_ahead(blocks, first, stale.get(i + 2 * AHEAD));
-                ask_further(known, blocks, first, stale.get(i + AHEAD));
+                let later = |ahead: usize| stale.get(i + ahead).map(|&later| later as usize - first);
+                if let Some(later) = later(2 * AHEAD) {
+                    ask_for(&blocks[later]);
+                }
+                if let Some(later) = later(AHEAD) {
+                    ask_for_boxes(known, &blocks[later]);
+                }
             }
             let at = block as usize - first;
             let node = owner[block as usize];
@@ -219,22 +224,17 @@ impl<G: Gather> NullaryFnOnce for Renew<'_, G> {
 
 /// Asks for a block that is to come.
 #[inline(always)]
-fn ask_ahead(blocks: &[Block], first: usize, later: Option<&u32>) {
-    if let Some(&later) = later {
-        let block = &blocks[later as usize - first];
-        prefetch(&block.slots);
-        block.min.iter().chain(&block.max).for_each(prefetch);
-    }
+fn ask_for(block: &Block) {
+    prefetch(&block.slots);
+    block.min.iter().chain(&block.max).for_each(prefetch);
 }
 
 /// Asks for the boxes of a block that has been asked for: otherwise two lines of memory would have to be
 /// waited for one after the other, that of the slots, then those of their boxes.
 #[inline(always)]
-fn ask_further(known: &[Words], blocks: &[Block], first: usize, later: Option<&u32>) {
-    if let Some(&later) = later {
-        for &slot in &blocks[later as usize - first].slots {
-            prefetch(known.get(slot as usize).unwrap_or(&Words::NOTHING));
-        }
+fn ask_for_boxes(known: &[Words], block: &Block) {
+    for &slot in &block.slots {
+        prefetch(known.get(slot as usize).unwrap_or(&Words::NOTHING));
     }
 }
 

@@ -17,7 +17,7 @@ use tercet::tree::TreeConfig;
 use tercet::worlds;
 
 use crate::frames::Studio;
-use crate::pixels::{FORMAT, Target, objects, shoot};
+use crate::pixels::{FORMAT, SHADINGS, Target, objects, shoot};
 use crate::support::{Gpu, gpus};
 use crate::uploads::{flat_view, tile};
 
@@ -112,6 +112,16 @@ fn run(gpu: &Gpu, test: SweepTest, samples: u32, mistake: Option<Mistake>) -> Ou
     outcome
 }
 
+/// A world's objects on the device, and its scene.
+pub fn dressed(gpu: &Gpu, world: &mut World) -> (BySlot, Scene) {
+    let mut by_slot = BySlot::new(&gpu.device, &gpu.queue);
+    let mut scene = Scene::new(SceneConfig::default());
+    by_slot.dress(world);
+    scene.sync(world);
+    by_slot.follow(&scene, world).expect("an upload");
+    (by_slot, scene)
+}
+
 /// Draws a frame; returns how many objects were drawn in each part of an earlier one.
 pub fn draw(
     gpu: &Gpu,
@@ -196,14 +206,8 @@ fn every_shading_looks_as_ever() {
     let view = flat_view(SIDE);
     let mut world = tiles(SIDE);
     for gpu in gpus() {
-        let mut by_slot = BySlot::new(&gpu.device, &gpu.queue);
-        let mut scene = Scene::new(SceneConfig::default());
-        by_slot.dress(&mut world);
-        scene.sync(&world);
-        by_slot.follow(&scene, &world).expect("an upload");
-        for (shading, look_ups) in
-            [(Shading::Lit, 0), (Shading::Lit, 3), (Shading::Unlit, 0), (Shading::Overdraw, 0)]
-        {
+        let (by_slot, scene) = dressed(&gpu, &mut world);
+        for (shading, look_ups) in SHADINGS {
             let want = shoot(&gpu, &view, shading, |renderer, pass| {
                 renderer.set_look_ups(look_ups);
                 renderer.draw(pass, &world, &objects(&world));

@@ -3,23 +3,21 @@
 
 use glam::{Affine3A, Vec2, Vec3};
 use hecs::World;
-use tercet::draw::{BySlot, Detail, Drawable, Lines, Renderer, Shading};
+use tercet::draw::{Detail, Drawable, Lines, Renderer, Shading};
 use tercet::geom::{Aabb, DepthFormat, ScreenOutline, View, Viewport};
 use tercet::query::QueryBackend;
 use tercet::query::gpu::{FrameTargets, GpuQueries, IndirectConfig, IndirectCuller};
-use tercet::scene::{Bounds, ObjectRef, Scene, SceneConfig};
+use tercet::scene::{Bounds, ObjectRef};
 use tercet::worlds;
 use wgpu::{Color, LoadOp, RenderPass, Texture};
 
 use crate::by_slot;
-use crate::pixels::{FORMAT, Shot, Target, objects};
+use crate::pixels::{FORMAT, SHADINGS, Shot, Target, objects};
 use crate::stage::Stage;
 use crate::support::{Gpu, gpus, read_texels, texture};
 use crate::uploads::{flat_view, tile};
 
 const SCREEN: Viewport = Viewport::new(128, 72);
-const SHADINGS: [(Shading, u32); 4] =
-    [(Shading::Lit, 0), (Shading::Lit, 3), (Shading::Unlit, 0), (Shading::Overdraw, 0)];
 
 /// Targets with an item buffer beside the colour.
 struct Owned {
@@ -185,11 +183,7 @@ fn overlays_and_objects_by_slot_leave_the_ids_as_they_are() {
         assert!(plain.colors != over.colors && ids == same);
     }
     for gpu in gpus() {
-        let mut by_slot = BySlot::new(&gpu.device, &gpu.queue);
-        let mut scene = Scene::new(SceneConfig::default());
-        by_slot.dress(&mut world);
-        scene.sync(&world);
-        by_slot.follow(&scene, &world).expect("an upload");
+        let (by_slot, scene) = by_slot::dressed(&gpu, &mut world);
         for (shading, look_ups) in SHADINGS {
             let config = IndirectConfig::default();
             let mut eye = IndirectCuller::new(&gpu.device, &gpu.queue, config).expect("a view");

@@ -13,6 +13,10 @@ use crate::support::{Gpu, depth_texture, read_depth, read_texels, texture};
 /// What all pictures are drawn in.
 pub const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
+/// Every shading, and how many look-ups it takes.
+pub const SHADINGS: [(Shading, u32); 4] =
+    [(Shading::Lit, 0), (Shading::Lit, 3), (Shading::Unlit, 0), (Shading::Overdraw, 0)];
+
 /// Attachments for a view.
 pub struct Target {
     color: Texture,
