@@ -8,7 +8,7 @@
 //! two threads by the wall's clock; writes them as CSV, and plots.
 //!
 //! `cargo bench --bench tree_maintenance [-- --quick] [-- --count N] [-- --moving SHARE]
-//! [-- --part number|manner|sync|threads] [-- --out DIR]`
+//! [-- --frames N] [-- --part number|manner|sync|threads] [-- --out DIR]`
 
 #[path = "../../examples/support/axis.rs"]
 mod axis;
@@ -23,6 +23,7 @@ mod threads;
 mod workload;
 mod yardstick;
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::Parser;
@@ -41,6 +42,9 @@ struct Flags {
     /// Only this share of the boxes moves.
     #[arg(long)]
     moving: Option<f64>,
+    /// Frames of each world, instead of as many as its number of boxes suggests.
+    #[arg(long)]
+    frames: Option<NonZeroUsize>,
     /// Only this table.
     #[arg(long)]
     part: Option<Part>,
@@ -75,7 +79,10 @@ fn measure_all(flags: &Flags) -> anyhow::Result<()> {
         None => vec![2_500, 13_550, 100_000, 1_000_000],
     };
     let measured = |name: &str, count: usize, moving, manner, asking| {
-        let frames = if flags.quick { 20 } else { (40_000_000 / count).clamp(60, 2000) };
+        // Queries come every eighth frame and empty the caches: a tenth of the frames is whole rounds of
+        // eight, or what is said of ageing compares frames after queries with others.
+        let usual = if flags.quick { 20 } else { (40_000_000 / count).clamp(160, 2000) };
+        let frames = flags.frames.map_or(usual, NonZeroUsize::get);
         let runs = if flags.quick { 1 } else { (3_000_000 / count).clamp(1, 3) };
         measure::run(Case { name: name.to_owned(), count, moving, manner, asking, frames, runs })
     };

@@ -37,11 +37,11 @@ fn main() -> anyhow::Result<()> {
     let mut csv = csv::Writer::from_path(out.join("table.csv"))?;
     csv.write_record(NAMES)?;
     let quick = std::env::args().any(|argument| argument == "--quick");
-    let counts: &[usize] = if quick { &[2_500] } else { &[13_550, 100_000] };
+    let counts: &[usize] = if quick { &[2_500] } else { &[13_550, 100_000, 1_000_000] };
     println!("| {} |\n|{}", NAMES.join(" | "), "---|".repeat(NAMES.len()));
     let mut rows = Vec::new();
     for &count in counts {
-        let frames = if quick { 10 } else { 40 };
+        let frames = if quick || count >= 1_000_000 { 10 } else { 40 };
         let mut all = Vec::new();
         for row in [
             run::<trees::tercet::Tercet>("tercet", count, frames),

@@ -34,8 +34,8 @@ pub fn ratios(path: &Path, rows: &[Row]) -> anyhow::Result<()> {
         .zip(COLORS)
         .map(|(row, color)| Key::new(color, row.name.to_owned()))
         .collect();
-    let (low, high) = (0.1, 3000.0);
-    canvas::save(path, (1100, 560), |sheet| {
+    let (low, high) = (0.05, 5000.0);
+    canvas::save(path, (100 + 140 * groups.len() as u32, 560), |sheet| {
         let subtitle =
             "Half of the boxes move; over writing them, and over a scan of all boxes; less is better";
         let area = canvas::heading(sheet, "Trees beside each other", subtitle, &legend)?;
