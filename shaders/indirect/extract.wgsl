@@ -7,14 +7,10 @@
 @group(1) @binding(1) var<storage, read> marks: array<u32>;
 // By place. Who has none has an empty rectangle.
 @group(1) @binding(2) var<storage, read> proxies: array<Proxy>;
-@group(1) @binding(3) var<storage, read_write> groups: array<Listed>;
-@group(1) @binding(4) var<storage, read_write> loose: array<Listed>;
-// Of the draws of the two: vertices, instances, and two times 0.
-@group(1) @binding(5) var<storage, read_write> draws: array<atomic<u32>>;
-
-fn is_empty(rect: vec4<u32>) -> bool {
-    return any(rect.xy >= rect.zw);
-}
+// By place: what is known of objects so far.
+@group(1) @binding(3) var<storage, read> verdicts: array<u32>;
+@group(1) @binding(4) var<storage, read_write> listed: List;
+@group(1) @binding(5) var<storage, read_write> loose: List;
 
 // Whether rays over all of its rectangle would be too many.
 fn is_too_large(node: Node) -> bool {
@@ -25,10 +21,7 @@ fn is_too_large(node: Node) -> bool {
 // Lists a node's own objects.
 fn loosen(node: Node) {
     for (var place = node.first; place < node.end; place++) {
-        let rect = proxies[place].rect;
-        if !is_empty(rect) {
-            loose[atomicAdd(&draws[5], 1u)] = Listed(rect, place);
-        }
+        list_object(place);
     }
 }
 
@@ -61,7 +54,7 @@ fn extract(
             loosen(node);
             at = node.enter;
         } else {
-            groups[atomicAdd(&draws[1], 1u)] = Listed(node.rect, at);
+            list_group(at);
             at = node.skip;
         }
     }

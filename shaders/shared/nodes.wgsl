@@ -13,10 +13,15 @@ struct Node {
     first: u32,
     end: u32,
     parent: u32,
-    // Whether it is OUTSIDE, HIDDEN for all that is known, or SEEN: it cannot be asked about.
+    // Whether it is OUTSIDE, HIDDEN for all that is known (outside or hidden, if the rectangle is empty), or SEEN:
+    // it cannot be asked about.
     verdict: u32,
     unused: u32,
 }
 
 // No node.
 const NONE: u32 = 0xffffffffu;
+
+fn is_empty(rect: vec4<u32>) -> bool {
+    return any(rect.xy >= rect.zw);
+}

@@ -10,7 +10,9 @@ struct Proxy {
     nearest: f32,
     // 1 if it is enough to know whether one sample is in sight.
     any: u32,
-    unused: vec2<u32>,
+    // The part of the rectangle outside of which no sample is in sight: x0, y0 and x1, y1, 16 bits each; all
+    // of it, if there are no pixels in it.
+    part: vec2<u32>,
 }
 
 fn affine(f: vec4<f32>, d: vec2<f32>) -> f32 {

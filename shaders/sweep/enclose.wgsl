@@ -34,9 +34,6 @@ fn enclose(
     if verdict == HIDDEN {
         rect = pixels(&screen);
         nearest = max(screen.nearest + screen.depth_error, view.cleared) + view.slack;
-        if any(rect.xy >= rect.zw) {
-            verdict = OUTSIDE;
-        }
     }
     if verdict == SEEN {
         rect = vec4<f32>(vec2<f32>(0.0), view.size);

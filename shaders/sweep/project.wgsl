@@ -5,6 +5,10 @@
 @group(1) @binding(1) var<storage, read> asked: array<u32>;
 @group(1) @binding(2) var<storage, read_write> made: array<Proxy>;
 @group(1) @binding(3) var<storage, read_write> verdicts: array<u32>;
+// Where their leaves lie.
+@group(1) @binding(4) var<storage, read> nodes: array<Node>;
+// The places of those that are wanted.
+@group(1) @binding(5) var<storage, read> wanted: array<u32>;
 
 // See src/geom/coefficients.rs.
 const MAX_SLOPE: f32 = 1e6;
@@ -50,18 +54,7 @@ fn support(screen: ptr<function, Screen>, origin: vec2<f32>, ends: u32) -> Suppo
     return Support(slope, low, high, (high - at_edge) - (at_edge - low));
 }
 
-@compute @workgroup_size(64)
-fn project(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = (group.y * groups.x + group.x) * 64u + lane;
-    // The bindings have exactly what is asked about.
-    if index >= arrayLength(&asked) {
-        return;
-    }
-    let box = boxes[asked[index]];
+fn make(index: u32, box: Box) {
     var proxy: Proxy;
     var screen: Screen;
     var verdict = known(box, Room(1.0, 0.0), &screen);
@@ -75,6 +68,43 @@ fn project(
     // One without a proxy has an empty rectangle.
     made[index] = proxy;
     verdicts[index] = verdict;
+}
+
+@compute @workgroup_size(64)
+fn project(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = (group.y * groups.x + group.x) * 64u + lane;
+    // The bindings have exactly what is asked about.
+    if index < arrayLength(&asked) {
+        make(index, boxes[asked[index]]);
+    }
+}
+
+// The same for the tree's objects: where a leaf that was placed has no rectangle, none of its objects has a
+// sample. (Of a leaf that lies beside the eye that is true as well, but some of its objects may count as seen.)
+@compute @workgroup_size(64)
+fn project_below(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let at = (group.y * groups.x + group.x) * 64u + lane;
+    if at >= arrayLength(&wanted) {
+        return;
+    }
+    let index = wanted[at];
+    let box = boxes[asked[index]];
+    if box.node < arrayLength(&nodes)
+        && nodes[box.node].verdict == HIDDEN
+        && is_empty(nodes[box.node].rect) {
+        made[index].rect = vec4<u32>(0u);
+        verdicts[index] = OUTSIDE;
+        return;
+    }
+    make(index, box);
 }
 
 fn fill(

@@ -13,6 +13,7 @@ use tercet::worlds::{self, Model, Pathology};
 use crate::renderer::Renderer;
 use crate::stage::Stage;
 use crate::support::{Gpu, depth_texture, gpus, read_depth, supported, targets};
+use crate::sweep_mutations::rays_alone;
 
 const SCREEN: Viewport = Viewport::new(96, 54);
 const FRAMES: u32 = 12;
@@ -146,23 +147,28 @@ fn random_worlds() {
 #[test]
 fn swept_worlds() {
     for gpu in gpus() {
-        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
-        for (&samples, name) in
-            gpu.sample_counts().iter().flat_map(|s| ["roc", "hroc", "hi-z", "hybrid"].map(|p| (s, p)))
-        {
+        let backend = |rays_from| {
+            let config = GpuConfig { rays_from, ..GpuConfig::default() };
+            GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend")
+        };
+        // Few objects are looked at one by one, unless rays are to be cast.
+        let few = GpuConfig::default().rays_from;
+        let ways = [("roc", few), ("hroc", 0), ("hroc", few), ("hi-z", few), ("hybrid", 0), ("hybrid", few)];
+        for (&samples, (name, rays_from)) in gpu.sample_counts().iter().flat_map(|s| ways.map(|p| (s, p))) {
+            let mut queries = backend(rays_from);
             let mut all = Outcome::default();
             for seed in 0..3 {
                 let formats = [DepthFormat::Depth32Float, DepthFormat::Depth24Plus];
                 let target = (formats[seed as usize % 2], samples);
                 run(&gpu, &mut queries, policy(name), (worlds::random(seed, 120), seed), target, &mut all);
             }
-            let run = format!("{:?}, {samples} samples, {name}", gpu.backend);
+            let run = format!("{:?}, {samples} samples, {name}, rays from {rays_from}", gpu.backend);
             println!("{run}: {all:?}");
             assert_eq!((all.lost, all.wrong), (0, 0), "{run} lost objects: {all:?}");
             assert!(all.hidden.min(all.visible) > 300, "there are things to hide: {all:?}");
             assert!(all.culled * 3 > all.hidden, "{run} culled little: {all:?}");
             assert!(all.extra_submits <= 0, "{run} submits more than once a wave: {all:?}");
-            assert!(all.groups > 100 || !["hroc", "hybrid"].contains(&name), "{run} casts no rays: {all:?}");
+            assert_eq!(all.groups > 100, rays_from == 0, "{run}: {all:?}");
         }
     }
 }
@@ -180,7 +186,9 @@ fn lying_sweeps_are_found_out() {
     let lie = "if i % 2u == 0u && proxies[i].nearest >= farthest";
     let honest = "if proxies[i].nearest >= farthest";
     shaders.sweep_hi_z.single = shaders.sweep_hi_z.single.replace(honest, lie).into();
-    let config = GpuConfig { shaders, ..GpuConfig::default() };
+    rays_alone(&mut shaders);
+    // Nothing is found beforehand.
+    let config = GpuConfig { shaders, prune_from: usize::MAX, rays_from: 0, ..GpuConfig::default() };
     let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config).expect("a backend");
     for name in ["roc", "hroc", "hi-z"] {
         let mut all = Outcome::default();

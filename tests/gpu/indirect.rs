@@ -13,6 +13,7 @@ use tercet::worlds::{self, Model, Pathology};
 use crate::indirect_renderer::Renderer;
 use crate::stage::Stage;
 use crate::support::{Gpu, depth_texture, gpus, read_buffer, read_depth, targets};
+use crate::sweep_mutations::rays_alone;
 
 const SCREEN: Viewport = Viewport::new(96, 54);
 const FRAMES: u32 = 12;
@@ -261,7 +262,10 @@ pub fn wrong_lists(gpu: &Gpu, config: IndirectConfig, count: usize) -> usize {
 /// each other, of which some come into view from frame to frame, behind a few that are drawn first.
 pub fn wrong_groups(gpu: &Gpu, config: IndirectConfig) -> usize {
     // Nothing is too large, and nothing lies outside or between the samples.
-    let mut eye = view(gpu, IndirectConfig { counters: true, share: 1.0, ..config });
+    // Nor is anything found out before rays are cast.
+    let mut whole = IndirectConfig { counters: true, share: 1.0, prune_from: usize::MAX, ..config };
+    rays_alone(&mut whole.shaders);
+    let mut eye = view(gpu, whole);
     let mut scene = Scene::new(fine());
     let at = |i: usize| Vec3::new((i % 19) as f32 - 9.0, (i / 19 % 7) as f32 - 3.0, (i % 5) as f32);
     // What hides nothing is never drawn first.

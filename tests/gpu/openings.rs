@@ -5,7 +5,7 @@ use glam::Vec3;
 use tercet::geom::{Aabb, Projected, Proxy, Question, View, Viewport, project};
 use tercet::policy;
 use tercet::query::gpu::{GpuConfig, GpuQueries};
-use tercet::query::{Answer, DrawTime, QueryBackend, Sweep, SweepTest, Ticket, Wait, Want};
+use tercet::query::{Answer, DeviceTimes, DrawTime, QueryBackend, Sweep, SweepTest, Ticket, Wait, Want};
 use tercet::scene::{ObjectRef, Scene, SceneConfig, Traits};
 use tercet::tree::TreeConfig;
 use tercet::{Culler, Error, worlds};
@@ -84,6 +84,10 @@ impl QueryBackend for Watched {
 
     fn draw_time(&self) -> DrawTime {
         self.queries.draw_time()
+    }
+
+    fn device_times(&self, frame: u64) -> Option<DeviceTimes> {
+        self.queries.device_times(frame)
     }
 
     fn end(&mut self) -> Result<(), Error> {

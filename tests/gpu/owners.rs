@@ -265,8 +265,8 @@ fn filtered_occluders_lose_nothing() {
     for gpu in gpus() {
         let mut queries = GpuQueries::new(&gpu.device, &gpu.queue).expect("a backend");
         for &samples in gpu.sample_counts() {
-            let (mut wrong, mut first) = (0, [0; 2]);
-            for (filtering, first) in ["false", "true"].into_iter().zip(&mut first) {
+            let (mut wrong, mut first, mut left_out) = (0, [0; 2], [0; 2]);
+            for (n, filtering) in ["false", "true"].into_iter().enumerate() {
                 let mut policy = policy::by_name("hroc").expect("a policy of that name");
                 policy.set("occluder_filtering", filtering).expect("a dial of that name");
                 let mut eye: Culler<Box<dyn Policy>> = Culler::new(policy);
@@ -282,22 +282,46 @@ fn filtered_occluders_lose_nothing() {
                         let targets = Targets::new(&gpu, &view);
                         targets.set(&mut queries);
                         renderer.begin(&view, stage.detail, Shading::Unlit);
+                        let mut handed = 0;
                         let draw = |pass: &mut _, objects: &[ObjectRef]| {
+                            handed += objects.len();
                             renderer.draw(pass, &stage.world, objects);
                         };
-                        eye.frame(&scene, &view, &mut queries, draw).expect("a frame");
-                        read_depth(&gpu, &targets.depth, &view).values
+                        let stats = eye.frame(&scene, &view, &mut queries, draw).expect("a frame");
+                        assert_eq!(handed as u32, stats.drawn + stats.left_out);
+                        let shot = read_depth(&gpu, &targets.depth, &view).values;
+                        // The same once more, in the same order: who owns nothing?
+                        queries.begin(&view).expect("begin");
+                        renderer.begin(&view, stage.detail, Shading::Unlit);
+                        let draw = |pass: &mut _| {
+                            renderer.draw(pass, &stage.world, eye.visible());
+                        };
+                        queries.draw(draw).expect("draw");
+                        let found = owners(&mut queries, &scene, &view, eye.visible());
+                        queries.end().expect("end");
+                        let hides = |object: &&ObjectRef| {
+                            let known = scene.object(object.id).expect("it was drawn");
+                            // Those outside of the tree are drawn always, and nobody asks about them.
+                            !known.traits.not_occluder && known.bounds.is_some()
+                        };
+                        let left_out = eye.visible().iter().filter(hides);
+                        let left_out = left_out.filter(|object| !found.contains(object.id)).count();
+                        let is_asked = eye.policy().asks_owners();
+                        assert_eq!(stats.left_out as usize, if is_asked { left_out } else { 0 });
+                        (shot, stats.left_out)
                     };
-                    let culled = shown(&mut eye);
+                    let (culled, left) = shown(&mut eye);
+                    left_out[n] += left;
                     let none = policy::by_name("none").expect("a policy of that name");
-                    let whole = shown(&mut Culler::new(none));
+                    let (whole, _) = shown(&mut Culler::new(none));
                     wrong += culled.iter().zip(&whole).filter(|(a, b)| a != b).count();
                     let counters = eye.policy().counters();
                     let drawn = counters.iter().find(|counter| counter.key == "drawn_first");
-                    *first += drawn.expect("a counter of that name").count;
+                    first[n] += drawn.expect("a counter of that name").count;
                 }
             }
-            println!("{:?}, {samples} samples: {first:?} drawn first", gpu.backend);
+            println!("{:?}, {samples} samples: {first:?} drawn first, {left_out:?} left out", gpu.backend);
+            assert!(left_out[0] == 0 && left_out[1] > 30, "{left_out:?} show nothing");
             assert_eq!(wrong, 0, "{:?}, {samples} samples", gpu.backend);
             assert!(first[1] > 0 && first[1] < first[0], "{first:?}: less is drawn first");
         }

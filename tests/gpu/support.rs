@@ -24,9 +24,9 @@ impl Gpu {
     }
 
     /// A backend with some dials, without allowance for emulated depth ranges: answers are
-    /// compared sample by sample with the depth that is there.
+    /// compared sample by sample with the depth that is there. Rays are cast, however few objects there are.
     pub fn exact_queries(&self, config: GpuConfig) -> GpuQueries {
-        let config = GpuConfig { depth_slack: Some(0.0), ..config };
+        let config = GpuConfig { depth_slack: Some(0.0), rays_from: 0, ..config };
         GpuQueries::with_config(&self.device, &self.queue, config).expect("a backend")
     }
 }

@@ -13,6 +13,7 @@ use tercet::tree::{NodeId, TreeConfig};
 
 use crate::geometry::{Case, Sample, random_case};
 use crate::support::{Gpu, Nearness, clip, depth_of, gpus, gpus_with, targets};
+use crate::sweep_mutations::rays_alone;
 use crate::twin::{Convention, conventions, occluders, plain_any, view_of};
 
 /// What a comparison met.
@@ -294,9 +295,13 @@ fn farthest_around(levels: &[Level], rect: &PixelRect) -> f32 {
 
 #[test]
 fn stages_equal_their_twins() {
-    for gpu in gpus() {
-        let mut twin = Twin::new(&gpu, GpuConfig::default());
-        for convention in conventions(&gpu) {
+    // Once with everything found beforehand that can be, once by closer tests alone: groups by rays.
+    let mut rays = GpuConfig { prune_from: usize::MAX, ..GpuConfig::default() };
+    rays_alone(&mut rays.shaders);
+    for (gpu, config) in gpus().iter().flat_map(|gpu| [GpuConfig::default(), rays.clone()].map(|c| (gpu, c)))
+    {
+        let mut twin = Twin::new(gpu, config);
+        for convention in conventions(gpu) {
             let mut dice = ChaCha8Rng::seed_from_u64(3);
             twin.tally = Tally::default();
             while twin.tally.asked < 500 {

@@ -20,8 +20,9 @@ fn sources() -> Vec<(String, Capabilities)> {
             (shaders.source(counting, several).to_owned(), needs)
         }));
         all.push((shaders.gather_blocks_source(several).to_owned(), Capabilities::empty()));
-        let Shaders { sweep_raster, sweep_rays, sweep_owners, build_pyramid, sweep_hi_z, .. } = &shaders;
-        let sweeps = [sweep_raster, sweep_rays, sweep_owners, build_pyramid, sweep_hi_z];
+        let Shaders { sweep_raster, sweep_rays, sweep_owners, build_pyramid, sweep_hi_z, prune, .. } =
+            &shaders;
+        let sweeps = [sweep_raster, sweep_rays, sweep_owners, build_pyramid, sweep_hi_z, prune];
         for shader in sweeps {
             all.push((shader.source(several).to_owned(), Capabilities::empty()));
         }
@@ -69,9 +70,9 @@ fn shaders_are_valid_and_portable() {
         }
     }
     assert_eq!(
-        entries, 43,
-        "twice each: four vertex, three fragment and eight compute stages; two of native queries, and \
-         eleven more that read no depth"
+        entries, 50,
+        "twice each: four vertex, three fragment and eleven compute stages; two of native queries, and \
+         twelve more that read no depth"
     );
 }
 

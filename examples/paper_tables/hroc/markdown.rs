@@ -62,7 +62,8 @@ sweep is nearly free and drawing is not; its worlds are not ours either.
 
 const ON_A_DEVICE: &str = "\
 - What is tested is boxes: by their rasterised proxies, by rays, or by a map of farthest depths. Filtering \
-reads an item buffer. What is GPU-driven is culled by the device alone: nothing comes back, and every \
+reads an item buffer: what was drawn and owns no sample in the end counts as left out. Its triangles were drawn all \
+the same, and *triangles* has them; before anything of it is drawn, boxes cull what the row HROC says. What is GPU-driven is culled by the device alone: nothing comes back, and every \
 frame draws twice at least.
 - A frame's time ends when the device has finished. Drawing, sweeping and culling are in it. The paper's \
 worlds are not ours.

@@ -18,12 +18,13 @@ use tercet::draw::Detail;
 use crate::algorithm::Algorithm;
 use crate::frames;
 use crate::output::Output;
-use algorithms::{ALGORITHMS, FILTERED, GPU_DRIVEN, REF, VFC};
+use algorithms::{ALGORITHMS, FILTERED, GPU_DRIVEN, HROC, REF, VFC};
 use scenes::{SCENES, Scene};
 use support::flags::{Backend, Flags};
 use support::lockstep::{Lane, Measured};
 use support::report::write_csv;
-use support::stage::{Gpu, Stage};
+use support::stage::{Gpu, Stage, WgpuStage};
+use tercet::query::gpu::GpuConfig;
 
 /// How much of each world is built, unless the command line says otherwise.
 const SCALE: f32 = 0.25;
@@ -61,13 +62,19 @@ pub fn run(flags: &Flags) -> anyhow::Result<()> {
     output.finish(&markdown::page(flags, &outcomes)?)
 }
 
-/// A lane an algorithm, on the GPU if there is one.
+/// A lane an algorithm, on the GPU if there is one: there HROC casts the paper's rays, however few objects there
+/// are.
 fn lanes(flags: &Flags, gpu: Option<&Gpu>) -> anyhow::Result<Vec<Lane>> {
-    let stage = || match gpu {
-        Some(gpu) => Stage::on(gpu.clone(), flags.detail()?),
-        None => Ok(Stage::software(flags.detail()?)),
+    let detail = flags.detail()?;
+    let stage = |n: usize| -> anyhow::Result<Stage> {
+        let Some(gpu) = gpu else { return Ok(Stage::software(detail)) };
+        let config = match n {
+            HROC | FILTERED => GpuConfig { rays_from: 0, ..GpuConfig::default() },
+            _ => GpuConfig::default(),
+        };
+        Ok(Stage::Wgpu(Box::new(WgpuStage::with_config(gpu.clone(), detail, config)?)))
     };
-    let host = ALGORITHMS.iter().map(|algorithm| algorithm.lane_on(stage()?, flags));
+    let host = ALGORITHMS.iter().enumerate().map(|(n, algorithm)| algorithm.lane_on(stage(n)?, flags));
     let device = gpu
         .into_iter()
         .flat_map(|gpu| GPU_DRIVEN.iter().map(|&(_, test)| Lane::gpu_driven(gpu.clone(), flags, test)));

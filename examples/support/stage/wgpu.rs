@@ -6,7 +6,7 @@ use anyhow::ensure;
 use hecs::World;
 use tercet::draw::{Detail, Renderer, Shading};
 use tercet::geom::{View, Viewport};
-use tercet::query::gpu::{FrameTargets, GpuQueries, wgpu};
+use tercet::query::gpu::{FrameTargets, GpuConfig, GpuQueries, wgpu};
 use tercet::record::Logged;
 use tercet::scene::Scene;
 use wgpu::{TextureFormat, TextureUsages, TextureView};
@@ -121,7 +121,15 @@ fn attachment(gpu: &Gpu, viewport: Viewport, format: TextureFormat, usage: Textu
 impl WgpuStage {
     /// Draws as finely as `detail` says.
     pub fn new(gpu: Gpu, detail: Detail) -> anyhow::Result<Self> {
-        let mut queries = GpuQueries::new(&gpu.device, &gpu.queue)?;
+        Self::with_config(gpu, detail, GpuConfig::default())
+    }
+
+    /// The same with other dials of the backend.
+    ///
+    /// # Errors
+    /// As [`WgpuStage::new`].
+    pub fn with_config(gpu: Gpu, detail: Detail, config: GpuConfig) -> anyhow::Result<Self> {
+        let mut queries = GpuQueries::with_config(&gpu.device, &gpu.queue, config)?;
         let picture = Picture::new(&gpu, Viewport::new(1, 1))?;
         queries.target(&picture.targets());
         Ok(Self {

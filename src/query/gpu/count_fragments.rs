@@ -18,7 +18,7 @@ use wgpu::{Device, ShaderModule, ShaderStages};
 use super::batch::Batch;
 use super::bind::{Bound, Layouts};
 use super::clock::Tape;
-use super::rectangles::{Draws, Of, Rectangles};
+use super::rectangles::{Instances, Of, Rectangles};
 use crate::geom::Viewport;
 
 /// The pass.
@@ -44,6 +44,7 @@ impl CountFragments {
         viewport: Viewport,
     ) {
         let count = batch.questions.proxies.len() as u32;
-        self.0.record(tape, [bound.frame, bound.batch], (&batch.proxies, Draws::Count(count)), viewport);
+        let proxies = Instances::Proxies(&batch.proxies, count);
+        self.0.record(tape, [bound.frame, bound.batch], proxies, viewport);
     }
 }

@@ -64,7 +64,8 @@ pub(super) struct PackedProxy {
     planes: [[f32; 4]; 3],
     pub(super) nearest: f32,
     any: u32,
-    unused: [u32; 2],
+    /// Filled in by the device.
+    part: [u32; 2],
 }
 
 /// Slopes and constants beyond these are not evaluated: sums of products could overflow. Offsets
@@ -203,7 +204,7 @@ pub(super) mod tests {
             let source = shaders.source(Counting::Workgroups, multisampled);
             let module = wgsl::parse_str(source).expect("it parses");
             assert_same_layout!(&module, "Frame", PackedFrame, [origin, size, sign, samples, unused]);
-            assert_same_layout!(&module, "Proxy", PackedProxy, [rect, edges, planes, nearest, any, unused]);
+            assert_same_layout!(&module, "Proxy", PackedProxy, [rect, edges, planes, nearest, any, part]);
             assert_same_layout!(&module, "Tile", PackedTile, [proxy, column, row, unused]);
             assert_same_layout!(&module, "Count", PackedCount, [visible, total]);
             for (name, value) in [("TILE", TILE), ("BLOCK", BLOCK)] {

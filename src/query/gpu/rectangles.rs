@@ -6,18 +6,20 @@
 
 use std::mem::offset_of;
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::{Pod, Zeroable, bytes_of};
 use wgpu::{
-    BindGroup, Buffer, Color, ColorTargetState, ColorWrites, Device, Extent3d, FragmentState, LoadOp,
-    Operations, PrimitiveState, PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor,
-    RenderPipeline, RenderPipelineDescriptor, ShaderModule, StoreOp, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages, TextureView, VertexAttribute, VertexBufferLayout, VertexFormat,
-    VertexState, VertexStepMode,
+    BindGroup, Buffer, BufferBinding, BufferUsages, Color, ColorTargetState, ColorWrites, CommandEncoder,
+    Device, Extent3d, FragmentState, LoadOp, Operations, PrimitiveState, PrimitiveTopology, Queue,
+    RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderModule,
+    StoreOp, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, VertexAttribute,
+    VertexBufferLayout, VertexFormat, VertexState, VertexStepMode,
 };
 
 use super::bind::Layouts;
 use super::clock::{Purpose, Tape};
 use super::pack::PackedProxy;
+use super::sweep::array::DeviceArray;
+use crate::Error;
 use crate::geom::Viewport;
 
 /// What the target holds does not matter.
@@ -26,18 +28,61 @@ const FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Something in a list whose rectangle is drawn: the twin of the struct in `shaders/shared/listed.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(super) struct Listed {
+struct Listed {
     rect: [u32; 4],
     index: u32,
     unused: [u32; 3],
 }
+
+/// What the device lists to be drawn: the arguments of the draw, in the room of one thing, and after them the
+/// things.
+#[derive(Debug)]
+pub(super) struct List(DeviceArray<Listed>);
+
+impl List {
+    pub(super) fn new(device: &Device) -> Self {
+        let read = BufferUsages::VERTEX | BufferUsages::INDIRECT | BufferUsages::COPY_SRC;
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | read;
+        Self(DeviceArray::new(device, "tercet list", usage))
+    }
+
+    /// Makes room for so many things. The upload happens when the encoder is submitted.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the device cannot bind so many.
+    pub(super) fn resize(&mut self, device: &Device, queue: &Queue, things: usize) -> Result<(), Error> {
+        self.0.resize(device, things.max(1) + 1)?;
+        queue.write_buffer(self.0.buffer(), 0, bytes_of(&CORNERS));
+        Ok(())
+    }
+
+    /// Records that it holds nothing.
+    pub(super) fn clear(&self, encoder: &mut CommandEncoder) {
+        encoder.clear_buffer(self.0.buffer(), COUNT_AT, Some(4));
+    }
+
+    /// Records the way of how many things it holds into a buffer, from a byte on.
+    pub(super) fn copy_count(&self, encoder: &mut CommandEncoder, to: &Buffer, at: u64) {
+        encoder.copy_buffer_to_buffer(self.0.buffer(), COUNT_AT, to, at, 4);
+    }
+
+    /// What stages bind that list things.
+    pub(super) fn all(&self) -> BufferBinding<'_> {
+        self.0.all()
+    }
+}
+
+/// Vertices of a rectangle.
+const CORNERS: u32 = 4;
+/// The byte of a list where the number of its things is.
+const COUNT_AT: u64 = 4;
 
 /// Whose rectangles are drawn, as instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Of {
     /// Every proxy of a buffer.
     Proxies,
-    /// [`Listed`].
+    /// What a [`List`] holds.
     List,
 }
 
@@ -74,12 +119,12 @@ impl Of {
     }
 }
 
-/// How many instances are drawn.
+/// Which instances are drawn.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Draws<'a> {
-    Count(u32),
-    /// As the arguments of a draw say, from a byte of a buffer on.
-    Indirect(&'a Buffer, u64),
+pub(super) enum Instances<'a> {
+    /// The first proxies of a buffer.
+    Proxies(&'a Buffer, u32),
+    Listed(&'a List),
 }
 
 /// A pass over rectangles.
@@ -124,12 +169,12 @@ impl Rectangles {
         Self { label, pipeline, canvas: Canvas::default() }
     }
 
-    /// Records the pass over the first instances of a buffer, with these bind groups in order.
+    /// Records the pass over instances of the kind that it was made for, with these bind groups in order.
     pub(super) fn record(
         &mut self,
         tape: &mut Tape<'_>,
         groups: [&BindGroup; 2],
-        (instances, draws): (&Buffer, Draws<'_>),
+        instances: Instances<'_>,
         viewport: Viewport,
     ) {
         let attachment = RenderPassColorAttachment {
@@ -148,10 +193,15 @@ impl Rectangles {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, groups[0], &[]);
         pass.set_bind_group(1, groups[1], &[]);
-        pass.set_vertex_buffer(0, instances.slice(..));
-        match draws {
-            Draws::Count(count) => pass.draw(0..4, 0..count),
-            Draws::Indirect(buffer, offset) => pass.draw_indirect(buffer, offset),
+        match instances {
+            Instances::Proxies(proxies, count) => {
+                pass.set_vertex_buffer(0, proxies.slice(..));
+                pass.draw(0..CORNERS, 0..count);
+            }
+            Instances::Listed(List(list)) => {
+                pass.set_vertex_buffer(0, list.buffer().slice(size_of::<Listed>() as u64..));
+                pass.draw_indirect(list.buffer(), 0);
+            }
         }
     }
 }
@@ -192,6 +242,8 @@ mod tests {
     #[test]
     fn structs_lie_in_memory_as_the_shader_thinks() {
         let module = wgpu::naga::front::wgsl::parse_str(&Shaders::default().enlist).expect("it parses");
+        let (members, _) = layout(&module, "List");
+        assert_eq!(members[1], ("things".to_owned(), size_of::<Listed>() as u32));
         let (members, span) = layout(&module, "Listed");
         let index = offset_of!(Listed, index) as u32;
         assert_eq!(members, [("rect".to_owned(), 0), ("index".to_owned(), index)]);

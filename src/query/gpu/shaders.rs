@@ -53,6 +53,8 @@ pub struct Shaders {
     pub build_pyramid: Shader,
     /// [`SweepTest::HiZ`](crate::query::SweepTest::HiZ).
     pub sweep_hi_z: Shader,
+    /// What the pyramid shows to be hidden, and a few samples to be seen, before closer tests.
+    pub prune: Shader,
     /// Which nodes of the tree hold what was drawn first, in an indirect frame by rays.
     pub mark: Cow<'static, str>,
     /// Its groups, and its loose objects.
@@ -87,16 +89,20 @@ impl Shaders {
 /// is named, and the rest.
 macro_rules! shader {
     ([$single:literal, $multisampled:literal] $($part:literal),*) => {
+        shader!([bare $single, $multisampled] "shared/question.wgsl", $($part),*)
+    };
+    // Without the proxies as they are mostly read.
+    ([bare $single:literal, $multisampled:literal] $($part:literal),*) => {
         Shader {
             single: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/proxy.wgsl"),
-                include_str!("../../../shaders/shared/question.wgsl"),
+                include_str!("../../../shaders/shared/frame.wgsl"),
                 include_str!(concat!("../../../shaders/", $single)),
                 $(include_str!(concat!("../../../shaders/", $part))),*
             )),
             multisampled: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/proxy.wgsl"),
-                include_str!("../../../shaders/shared/question.wgsl"),
+                include_str!("../../../shaders/shared/frame.wgsl"),
                 include_str!(concat!("../../../shaders/", $multisampled)),
                 $(include_str!(concat!("../../../shaders/", $part))),*
             )),
@@ -132,12 +138,14 @@ impl Default for Shaders {
             gather_blocks: shader!("gather_blocks.wgsl"),
             ask_natively: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/proxy.wgsl"),
+                include_str!("../../../shaders/shared/frame.wgsl"),
                 include_str!("../../../shaders/shared/question.wgsl"),
                 include_str!("../../../shaders/ask_natively.wgsl"),
             )),
             project: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/proxy.wgsl"),
                 include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/shared/nodes.wgsl"),
                 include_str!("../../../shaders/sweep/place.wgsl"),
                 include_str!("../../../shaders/sweep/project.wgsl"),
             )),
@@ -155,8 +163,11 @@ impl Default for Shaders {
                 include_str!("../../../shaders/sweep/enclose.wgsl"),
             )),
             enlist: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/proxy.wgsl"),
+                include_str!("../../../shaders/shared/verdict.wgsl"),
                 include_str!("../../../shaders/shared/nodes.wgsl"),
                 include_str!("../../../shaders/shared/listed.wgsl"),
+                include_str!("../../../shaders/shared/list_group.wgsl"),
                 include_str!("../../../shaders/sweep/enlist.wgsl"),
             )),
             sweep_rays: shader!(
@@ -172,7 +183,21 @@ impl Default for Shaders {
                 "sweep/owners.wgsl"
             ),
             build_pyramid: shader!("shared/pyramid.wgsl", "sweep/pyramid.wgsl"),
-            sweep_hi_z: shader!("shared/verdict.wgsl", "shared/pyramid.wgsl", "sweep/hi_z.wgsl"),
+            sweep_hi_z: shader!(
+                "shared/verdict.wgsl",
+                "shared/pyramid.wgsl",
+                "shared/farthest.wgsl",
+                "sweep/hi_z.wgsl"
+            ),
+            prune: shader!(
+                [bare "shared/depth.wgsl", "shared/depth_multisampled.wgsl"]
+                "shared/verdict.wgsl",
+                "shared/nodes.wgsl",
+                "shared/pyramid.wgsl",
+                "shared/farthest.wgsl",
+                "shared/listed.wgsl",
+                "sweep/prune.wgsl"
+            ),
             mark: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/nodes.wgsl"),
                 include_str!("../../../shaders/shared/marks.wgsl"),
@@ -184,6 +209,7 @@ impl Default for Shaders {
                 include_str!("../../../shaders/shared/nodes.wgsl"),
                 include_str!("../../../shaders/shared/marks.wgsl"),
                 include_str!("../../../shaders/shared/listed.wgsl"),
+                include_str!("../../../shaders/shared/list_group.wgsl"),
                 include_str!("../../../shaders/indirect/extract.wgsl"),
             )),
             spread: Cow::Borrowed(include_str!("../../../shaders/indirect/spread.wgsl")),

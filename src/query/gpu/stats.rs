@@ -15,7 +15,8 @@ pub struct GpuStats {
     pub sweeps: u64,
     /// Objects that they looked at.
     pub swept: u64,
-    /// Groups among them into which rays were cast.
+    /// Groups among them that the device looked at by way of the tree: by rays, or object by object where that is
+    /// less.
     pub groups: u64,
     /// Bytes of boxes, and for rays of the tree, that were uploaded for them: of what has changed since
     /// the last sweep.

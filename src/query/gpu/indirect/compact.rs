@@ -39,12 +39,12 @@ pub(super) struct Parts<'a> {
 
 /// A list of a frame: slots, and the arguments of the draws.
 #[derive(Debug)]
-pub(super) struct List {
+pub(super) struct Instances {
     pub(super) instances: Buffer,
     pub(super) arguments: Buffer,
 }
 
-impl List {
+impl Instances {
     pub(super) fn new(device: &Device, objects: u32, meshes: u32) -> Self {
         let buffer = |label, size, usage| {
             let usage = usage | BufferUsages::STORAGE | BufferUsages::COPY_SRC;
@@ -104,7 +104,7 @@ impl Compact {
         tape: &mut Tape<'_>,
         parts: &Parts<'_>,
         [objects, meshes]: [u32; 2],
-        to: &List,
+        to: &Instances,
     ) {
         let Parts { order, mesh_of, meshes: all, before } = parts.clone();
         let instances = exactly(&to.instances, objects, size_of::<u32>());

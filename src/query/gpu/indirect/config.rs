@@ -1,5 +1,6 @@
 //! The dials of indirect frames.
 
+use super::super::config::PRUNE_FROM;
 use super::super::shaders::Shaders;
 use crate::query::SweepTest;
 
@@ -17,6 +18,8 @@ pub struct IndirectConfig {
     /// Whether the counters of [`IndirectStats`](super::IndirectStats) come back, some frames late. Nothing
     /// waits for them.
     pub counters: bool,
+    /// See [`GpuConfig::prune_from`](super::super::GpuConfig::prune_from).
+    pub prune_from: usize,
     /// See [`GpuConfig::depth_slack`](super::super::GpuConfig::depth_slack).
     pub depth_slack: Option<f32>,
     /// The sources of the passes.
@@ -29,6 +32,7 @@ impl Default for IndirectConfig {
             test: SweepTest::HiZ,
             share: 0.25,
             counters: false,
+            prune_from: PRUNE_FROM,
             depth_slack: None,
             shaders: Shaders::default(),
         }

@@ -45,6 +45,7 @@ use super::counter::compiled;
 use super::guard::guarded;
 use super::pack::{EMULATED_RANGE, PackedFrame};
 use super::read_back::{ReadBack, State};
+use super::rectangles::List;
 use super::sweep::array::exactly;
 use super::sweep::asked::Asked;
 use super::sweep::boxes::{self, PackedBox};
@@ -56,7 +57,7 @@ use crate::Error;
 use crate::geom::View;
 use crate::query::SweepTest;
 use crate::scene::Scene;
-use compact::{ARGUMENTS, Compact, List, Parts};
+use compact::{ARGUMENTS, Compact, Instances, Parts};
 use groups::Groups;
 use order::Order;
 use select::{Select, Source, Which};
@@ -71,7 +72,7 @@ pub struct IndirectStats {
     /// Of an earlier frame, if counters are asked for: objects drawn because the last frame had found
     /// them visible, because this one has, and of those that hide nothing.
     pub drawn: Option<[u32; 3]>,
-    /// The same of what was tested by rays: groups, and objects by themselves.
+    /// The same of what was looked at closely where tests are by rays: groups, and objects by themselves.
     pub tested: Option<[u32; 2]>,
 }
 
@@ -112,11 +113,13 @@ pub struct IndirectCuller {
     scratch: Vec<PackedBox>,
     order: Order,
     asked: Asked,
+    /// Those of them that must be looked at closely.
+    open: List,
     /// For tests by rays; then nothing else is asked.
     groups: Option<Groups>,
     /// By slot, across frames.
     remembered: Buffer,
-    lists: [List; 3],
+    lists: [Instances; 3],
     counters: Option<ReadBack>,
     counted: Option<[u32; 5]>,
 }
@@ -153,9 +156,10 @@ impl IndirectCuller {
                 scratch: Vec::new(),
                 order: Order::new(device),
                 asked: Asked::new(device),
+                open: List::new(device),
                 groups: (config.test == SweepTest::Rays).then(|| Groups::new(device, &config.shaders)),
                 remembered: remembered(device, 64),
-                lists: std::array::from_fn(|_| List::new(device, 64, 16)),
+                lists: std::array::from_fn(|_| Instances::new(device, 64, 16)),
                 counters: config.counters.then(|| ReadBack::new(device, COUNTERS)),
                 counted: None,
                 config,
@@ -237,11 +241,14 @@ impl IndirectCuller {
                 let (order, share) = (self.order.slots.known(), self.config.share);
                 uploaded += groups.follow((device, queue), scene, order, (view, share))?;
             }
-            None => self.asked.resize(device, objects as usize)?,
+            None => {
+                self.asked.resize(device, objects as usize)?;
+                self.open.resize(device, queue, objects as usize)?;
+            }
         }
         self.select.resize(device, queue, objects);
         if !self.lists[0].holds(objects, count) {
-            self.lists = std::array::from_fn(|_| List::new(device, objects + objects / 2, count));
+            self.lists = std::array::from_fn(|_| Instances::new(device, objects + objects / 2, count));
         }
         queue.write_buffer(&self.view, 0, bytes_of(&PackedView::new(view, self.slack)));
         queue.write_buffer(&self.uniforms, 0, bytes_of(&PackedFrame::new(view)));
@@ -254,6 +261,9 @@ impl IndirectCuller {
             Some(passes) => passes,
             none => none.insert(Passes::new(&self.device, &self.config.shaders, several)?),
         };
+        if self.groups.is_some() {
+            passes.open_rays(&self.device, &self.config.shaders, several)?;
+        }
         Ok(passes.bind(&self.device, &self.view, &self.uniforms, depth))
     }
 
@@ -264,7 +274,7 @@ impl IndirectCuller {
         let passes = self.passes[usize::from(view.samples() > 1)].as_ref().expect("made when bound");
         let boxes = self.boxes.binding();
         match &self.groups {
-            Some(groups) => groups.project(tape, &passes.project, bound, boxes),
+            Some(groups) => groups.project(tape, bound, boxes),
             None => {
                 let slots = self.order.slots.binding();
                 passes.project.record(tape, &bound.view, boxes, slots, &self.asked);
@@ -277,17 +287,24 @@ impl IndirectCuller {
         if self.order.objects() == 0 {
             return;
         }
+        let passes = self.passes[usize::from(view.samples() > 1)].as_mut().expect("made when bound");
+        let test = self.config.test;
+        let prunes = self.order.objects() as usize >= self.config.prune_from;
+        let has_pyramid =
+            (test == SweepTest::HiZ || prunes) && passes.build_pyramid(tape, bound, view.viewport());
         if let Some(groups) = &mut self.groups {
+            if has_pyramid {
+                groups.prune(tape, passes, bound);
+            }
             let remembered = exactly(&self.remembered, self.boxes.len() as u32, size_of::<u32>());
-            groups.look(tape, &self.config.shaders, bound, view, remembered);
+            groups.look(tape, passes, bound, view.viewport(), remembered);
             if let Some(counters) = self.counters.as_ref().filter(|it| it.state() == State::Recorded) {
                 groups.copy_counts(tape.encoder, counters.buffer(), size_of::<[u32; 3]>() as u64);
             }
             return;
         }
-        let passes = self.passes[usize::from(view.samples() > 1)].as_mut().expect("made when bound");
-        let by_pyramid = self.config.test == SweepTest::HiZ;
-        passes.record_test(tape, bound, &self.asked, view.viewport(), by_pyramid);
+        let asked = (&self.asked, &self.open);
+        passes.record_test(tape, bound, asked, view.viewport(), (test, has_pyramid));
     }
 
     fn record_list(&self, tape: &mut Tape<'_>, which: Which) {

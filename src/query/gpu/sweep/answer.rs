@@ -96,6 +96,9 @@ impl GpuQueries {
         }
         let recorded = match sweep.test {
             SweepTest::Owners => self.record_owners(sweep),
+            SweepTest::Rays if self.has_few(sweep) => {
+                self.record_looks(sweep, Some(SweepTest::Raster)).map(Some)
+            }
             SweepTest::Rays => match self.record_looks(sweep, Some(sweep.test)) {
                 // The tree is more than the device can bind: its objects may not be.
                 Err(Error::Device { .. }) => self.record_looks(sweep, Some(SweepTest::Raster)).map(Some),
@@ -115,6 +118,13 @@ impl GpuQueries {
             Err(error) => return Err(error),
         }
         Ok(())
+    }
+
+    /// Whether all groups of a sweep have too few objects for the device to take the way of the tree. O(groups).
+    fn has_few(&self, sweep: &Sweep<'_>) -> bool {
+        let tree = sweep.scene.tree();
+        let objects: usize = sweep.groups.iter().map(|&group| tree.count(group)).sum();
+        objects < self.config.rays_from
     }
 
     /// Records the looking through the item buffer, if there is one; returns which sweep it is.

@@ -4,22 +4,21 @@
 use std::ops::Range;
 
 use bytemuck::cast_slice;
-use wgpu::{Buffer, Device, Queue};
+use wgpu::{Buffer, BufferBinding, Device, Queue};
 
 use super::array::DeviceArray;
-use super::asked::{self, SEEN, Verdicts};
+use super::asked::SEEN;
 use super::boxes::PackedBox;
 use super::enclose::Nodes;
 use super::mirror::Mirrored;
 use super::placed::PlacedTree;
-use super::rays::{self, Enlist, Rays};
-use super::{Bound, Project};
+use super::rays::{Enlist, Lists};
+use super::{Bound, Passes};
 use crate::Error;
 use crate::geom::{Frustum, Viewport};
 use crate::query::Sweep;
 use crate::query::gpu::clock::Tape;
 use crate::query::gpu::counter::compiled;
-use crate::query::gpu::rectangles::{Draws, Listed};
 use crate::query::gpu::shaders::Shaders;
 use crate::scene::{ObjectId, ObjectSet, Scene};
 use crate::tree::NodeId;
@@ -29,11 +28,9 @@ use crate::tree::NodeId;
 pub(super) struct Grove {
     tree: PlacedTree,
     enlist: Enlist,
-    /// What was known of the tree's objects before any ray.
-    first: Verdicts,
-    /// The same objects.
+    /// Its objects, by place.
     ids: Vec<ObjectId>,
-    /// Whether all of it is of this frame.
+    /// Whether its nodes are placed in this frame.
     is_ready: bool,
 }
 
@@ -41,9 +38,11 @@ pub(super) struct Grove {
 #[derive(Debug)]
 pub(super) struct Groups {
     indices: DeviceArray<u32>,
-    listed: DeviceArray<Listed>,
+    lists: Lists,
     /// The places of the objects below them, and what these must meet.
     below: Vec<Range<usize>>,
+    /// The same places one by one.
+    places: DeviceArray<u32>,
     frustum: Option<Frustum>,
 }
 
@@ -52,7 +51,6 @@ impl Grove {
         Self {
             tree: PlacedTree::new(device, shaders),
             enlist: Enlist::new(device, &compiled(device, &shaders.enlist)),
-            first: asked::verdicts(device),
             ids: Vec::new(),
             is_ready: false,
         }
@@ -63,52 +61,48 @@ impl Grove {
         self.is_ready = false;
     }
 
-    /// Uploads what has changed, once a frame, and records the making of proxies; returns the bytes.
+    /// Uploads what has changed, once a frame; returns the bytes.
     ///
     /// # Errors
     /// [`Error::Device`] if the device cannot bind so many nodes or objects.
-    pub(super) fn make_ready(
-        &mut self,
-        tape: &mut Tape<'_>,
-        queue: &Queue,
-        making: (&Project, &Bound),
-        boxes: &Mirrored<PackedBox>,
-        scene: &Scene,
-    ) -> Result<u64, Error> {
+    pub(super) fn follow(&mut self, device: &Device, queue: &Queue, scene: &Scene) -> Result<u64, Error> {
         if self.is_ready {
             return Ok(0);
         }
-        let device = tape.device;
         let uploaded = self.tree.follow(device, queue, scene, &[])?;
         let slots = self.tree.flat.slots();
-        self.first.resize(device, slots.len())?;
         let store = scene.objects_store();
         self.ids.clear();
         self.ids.extend(slots.iter().map(|&slot| store.id(slot)));
-        self.tree.place(tape, making, boxes.binding());
-        let verdicts = self.tree.objects.found().buffer();
-        tape.encoder.copy_buffer_to_buffer(verdicts, 0, self.first.buffer(), 0, self.bytes());
-        self.is_ready = true;
         Ok(uploaded)
     }
 
-    /// Records the casting of rays into groups, and the way of all verdicts into a buffer, from a place
-    /// in it on.
+    /// Records a sweep by rays into groups, and the way of all verdicts into a buffer, from a place in it on;
+    /// with the pyramid, if it has been built. The first one of a frame places the nodes.
     pub(super) fn record(
-        &self,
+        &mut self,
         tape: &mut Tape<'_>,
-        rays: &mut Rays,
-        bound: &Bound,
+        passes: &mut Passes,
+        (bound, boxes): (&Bound, BufferBinding<'_>),
         groups: &Groups,
-        viewport: Viewport,
+        (viewport, has_pyramid): (Viewport, bool),
         (to, at): (&Buffer, u64),
     ) {
-        let verdicts = self.tree.objects.found().buffer();
-        tape.encoder.copy_buffer_to_buffer(self.first.buffer(), 0, verdicts, 0, self.bytes());
-        self.enlist.record(tape, &self.tree.nodes, groups.indices.all(), &groups.listed);
-        let list = (groups.listed.buffer(), Draws::Count(groups.count()));
-        rays.record(tape, &bound.frame, &self.tree, list, viewport);
-        tape.encoder.copy_buffer_to_buffer(verdicts, 0, to, at, self.bytes());
+        let Self { tree, enlist, is_ready, .. } = self;
+        if !std::mem::replace(is_ready, true) {
+            tree.place_nodes(tape, bound);
+        }
+        if has_pyramid {
+            passes.prune_nodes(tape, bound, tree);
+        }
+        tree.place_objects(tape, bound, boxes, groups.wanted());
+        if has_pyramid {
+            passes.prune_objects(tape, bound, tree, groups.wanted());
+        }
+        enlist.record(tape, tree, (groups.indices.all(), groups.count()), &groups.lists);
+        passes.look_below(tape, bound, tree, &groups.lists, viewport);
+        let found = tree.objects.found();
+        tape.encoder.copy_buffer_to_buffer(found.buffer(), 0, to, at, found.bytes());
     }
 
     /// Where nodes lie on the screen, by index.
@@ -144,8 +138,9 @@ impl Groups {
     pub(super) fn new(device: &Device) -> Self {
         Self {
             indices: DeviceArray::written(device, "tercet groups"),
-            listed: rays::list(device),
+            lists: Lists::new(device),
             below: Vec::new(),
+            places: DeviceArray::written(device, "tercet places below groups"),
             frustum: None,
         }
     }
@@ -157,12 +152,17 @@ impl Groups {
 
     /// How many there are.
     pub(super) fn count(&self) -> u32 {
-        self.listed.count()
+        self.indices.count()
     }
 
     /// How many objects are below them.
     pub(super) fn objects(&self) -> u64 {
         self.below.iter().map(|range| range.len() as u64).sum()
+    }
+
+    /// The places of these, and how many there are.
+    fn wanted(&self) -> (BufferBinding<'_>, u32) {
+        (self.places.all(), self.places.count())
     }
 
     /// Uploads those of a sweep into which rays are cast. The upload happens when the encoder is submitted.
@@ -182,8 +182,11 @@ impl Groups {
         self.below.extend(groups.iter().map(|&group| grove.tree.flat.below(sweep.scene.tree(), group)));
         self.frustum = Some(sweep.frustum.clone());
         self.indices.resize(device, indices.len())?;
-        self.listed.resize(device, indices.len())?;
+        self.lists.resize((device, queue), indices.len(), self.objects() as usize)?;
         queue.write_buffer(self.indices.buffer(), 0, cast_slice(&indices));
+        let places: Vec<u32> = self.below.iter().cloned().flatten().map(|place| place as u32).collect();
+        self.places.resize(device, places.len())?;
+        queue.write_buffer(self.places.buffer(), 0, cast_slice(&places));
         Ok(())
     }
 }

@@ -50,7 +50,8 @@ impl GpuQueries {
 
     /// Into which groups a sweep by rays casts them, and over which pixels of the viewport: those of the sweep,
     /// and what stands for such as are opened. None for the pixels of a group that the device cannot place:
-    /// its rays would go everywhere. Blocks.
+    /// its rays would go everywhere; no pixels where all of it is known to be hidden. Rays go over the part of these
+    /// where something is open, if they are less work than its objects one by one. Blocks.
     ///
     /// # Errors
     /// [`Error::Target`] outside a frame; what the device reports.

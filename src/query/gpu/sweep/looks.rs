@@ -115,9 +115,8 @@ impl GpuQueries {
                     none => none.insert(guard::guarded(device, || Grove::new(device, shaders))?),
                 };
                 // Now, if it cannot be made, nothing of it is recorded.
-                passes.rays(device, shaders, several)?;
-                let making = (&passes.project, bound);
-                self.stats.uploaded += grove.make_ready(&mut tape, queue, making, boxes, sweep.scene)?;
+                passes.open_rays(device, shaders, several)?;
+                self.stats.uploaded += grove.follow(device, queue, sweep.scene)?;
                 looked.groups.load(device, queue, grove, sweep, groups)?;
                 Some(grove)
             } else {
@@ -126,18 +125,22 @@ impl GpuQueries {
             let verdicts = looked.asked.found();
             let more = grove.as_ref().map_or(0, |grove| grove.bytes());
             swept.read_back.claim(device, verdicts.bytes() + more);
+            let below = if grove.is_some() { looked.groups.objects() } else { 0 };
+            let is_worth_it = ids.len() + below as usize >= self.config.prune_from;
+            let has_pyramid = test.is_some_and(|test| is_worth_it || test == SweepTest::HiZ)
+                && passes.build_pyramid(&mut tape, bound, viewport);
             if let Some(grove) = grove {
-                let rays = passes.rays(device, &self.config.shaders, several)?;
                 let to = (swept.read_back.buffer(), verdicts.bytes());
-                grove.record(&mut tape, rays, bound, &looked.groups, viewport, to);
+                let how = (viewport, has_pyramid);
+                grove.record(&mut tape, passes, (bound, boxes.binding()), &looked.groups, how, to);
                 self.stats.groups += u64::from(looked.groups.count());
-                self.stats.swept += looked.groups.objects();
+                self.stats.swept += below;
             }
             let slots = looked.slots.all();
             passes.project.record(&mut tape, &bound.view, boxes.binding(), slots, &looked.asked);
             if let Some(test) = test {
-                let by_pyramid = test == SweepTest::HiZ;
-                passes.record_test(&mut tape, bound, &looked.asked, viewport, by_pyramid);
+                let asked = (&looked.asked, &looked.open);
+                passes.record_test(&mut tape, bound, asked, viewport, (test, has_pyramid));
             }
             copy_verdicts(tape.encoder, verdicts, &swept.read_back);
             self.stats.sweeps += 1;

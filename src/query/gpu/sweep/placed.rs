@@ -2,10 +2,11 @@
 
 use wgpu::{BufferBinding, Device, Queue};
 
+use super::Bound;
 use super::asked::Asked;
 use super::enclose::{self, Enclose, Nodes};
 use super::flat::FlatTree;
-use super::{Bound, Project};
+use super::project::ProjectBelow;
 use crate::Error;
 use crate::query::gpu::clock::Tape;
 use crate::query::gpu::counter::compiled;
@@ -17,6 +18,7 @@ use crate::scene::Scene;
 pub(in crate::query::gpu) struct PlacedTree {
     pub(in crate::query::gpu) flat: FlatTree,
     enclose: Enclose,
+    project: ProjectBelow,
     pub(in crate::query::gpu) nodes: Nodes,
     /// By place.
     pub(in crate::query::gpu) objects: Asked,
@@ -27,6 +29,7 @@ impl PlacedTree {
         Self {
             flat: FlatTree::new(device),
             enclose: Enclose::new(device, &compiled(device, &shaders.enclose)),
+            project: ProjectBelow::new(device, &compiled(device, &shaders.project)),
             nodes: enclose::nodes(device),
             objects: Asked::new(device),
         }
@@ -50,14 +53,20 @@ impl PlacedTree {
         Ok(uploaded)
     }
 
-    /// Records the placing of all nodes and objects in a view.
-    pub(in crate::query::gpu) fn place(
+    /// Records the placing of all nodes in a view.
+    pub(in crate::query::gpu) fn place_nodes(&self, tape: &mut Tape<'_>, bound: &Bound) {
+        self.enclose.record(tape, &bound.view, &self.flat, &self.nodes);
+    }
+
+    /// Records that of objects, once it is known where the nodes lie: those at `wanted` places, so many.
+    pub(in crate::query::gpu) fn place_objects(
         &self,
         tape: &mut Tape<'_>,
-        (project, bound): (&Project, &Bound),
+        bound: &Bound,
         boxes: BufferBinding<'_>,
+        wanted: (BufferBinding<'_>, u32),
     ) {
-        self.enclose.record(tape, &bound.view, &self.flat, &self.nodes);
-        project.record(tape, &bound.view, boxes, self.flat.places(), &self.objects);
+        let boxes = (boxes, self.flat.places());
+        self.project.record(tape, &bound.view, boxes, &self.nodes, &self.objects, wanted);
     }
 }

@@ -39,6 +39,7 @@
 use wgpu::{BindGroup, Buffer, BufferBinding, Device, ShaderModule};
 
 use super::asked::Asked;
+use super::enclose::Nodes;
 use super::stage::Stage;
 use crate::query::gpu::clock::Tape;
 
@@ -52,7 +53,7 @@ impl Project {
         Self(Stage::new(device, module, ("tercet project", "project"), buffers))
     }
 
-    /// Binds a view, for this stage and that of nodes.
+    /// Binds a view, for this stage and those of the tree.
     pub(super) fn bind(&self, device: &Device, view: &Buffer) -> BindGroup {
         self.0.bind(device, view, None)
     }
@@ -68,5 +69,37 @@ impl Project {
     ) {
         let buffers = [(0, boxes), (1, slots), (2, asked.proxies()), (3, asked.verdicts())];
         self.0.record(tape, view, &buffers, asked.count());
+    }
+}
+
+/// The same of a tree's objects: nothing is made below nodes that have no rectangle.
+#[derive(Debug)]
+pub(super) struct ProjectBelow(Stage);
+
+impl ProjectBelow {
+    pub(super) fn new(device: &Device, module: &ShaderModule) -> Self {
+        let buffers = &[(0, false), (1, false), (2, true), (3, true), (4, false), (5, false)];
+        Self(Stage::new(device, module, ("tercet project below", "project_below"), buffers))
+    }
+
+    /// Records it: of the boxes at `slots`, below `nodes` that have been placed; those at `wanted` places, so many.
+    pub(super) fn record(
+        &self,
+        tape: &mut Tape<'_>,
+        view: &BindGroup,
+        (boxes, slots): (BufferBinding<'_>, BufferBinding<'_>),
+        nodes: &Nodes,
+        asked: &Asked,
+        (wanted, count): (BufferBinding<'_>, u32),
+    ) {
+        let buffers = [
+            (0, boxes),
+            (1, slots),
+            (2, asked.proxies()),
+            (3, asked.verdicts()),
+            (4, nodes.all()),
+            (5, wanted),
+        ];
+        self.0.record(tape, view, &buffers, count);
     }
 }

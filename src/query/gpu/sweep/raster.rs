@@ -1,14 +1,14 @@
 //! The test of ROC (Lee et al. 2021, and those before): proxies are drawn, and a fragment in sight
 //! stores a flag. See `count_fragments.rs` for why no early depth test is forced.
 
-use wgpu::{BindGroup, Buffer, Device, ShaderModule};
+use wgpu::{BindGroup, Device, ShaderModule};
 
 use super::asked::Asked;
 use super::stage::Drawn;
 use crate::geom::Viewport;
 use crate::query::gpu::bind::DepthAs;
 use crate::query::gpu::clock::Tape;
-use crate::query::gpu::rectangles::{Draws, Of};
+use crate::query::gpu::rectangles::{Instances, Of};
 
 /// The pass.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ impl Raster {
         tape: &mut Tape<'_>,
         frame: &BindGroup,
         asked: &Asked,
-        instances: (&Buffer, Draws<'_>),
+        instances: Instances<'_>,
         viewport: Viewport,
     ) {
         let buffers = [(0, asked.proxies()), (2, asked.verdicts())];

@@ -8,7 +8,7 @@ use wgpu::{
 use crate::geom::Viewport;
 use crate::query::gpu::bind::{self, DepthAs, Layouts};
 use crate::query::gpu::clock::Tape;
-use crate::query::gpu::rectangles::{Draws, Of, Rectangles};
+use crate::query::gpu::rectangles::{Instances, Of, Rectangles};
 
 /// The stages that read the frame and the depth.
 pub(super) const STAGES: ShaderStages = ShaderStages::VERTEX_FRAGMENT.union(ShaderStages::COMPUTE);
@@ -142,13 +142,13 @@ impl Drawn {
         Self { layouts, rectangles }
     }
 
-    /// Records the drawing of the first instances of a buffer.
+    /// Records the drawing of instances of the kind that it was made for.
     pub(super) fn record(
         &mut self,
         tape: &mut Tape<'_>,
         frame: &BindGroup,
         buffers: Buffers<'_>,
-        instances: (&Buffer, Draws<'_>),
+        instances: Instances<'_>,
         viewport: Viewport,
     ) {
         let bindings = bind::storage(tape.device, &self.layouts.batch, buffers);

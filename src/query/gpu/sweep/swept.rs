@@ -11,6 +11,7 @@ use super::targets::Targets;
 use crate::Error;
 use crate::query::Ticket;
 use crate::query::gpu::read_back::ReadBack;
+use crate::query::gpu::rectangles::List;
 use crate::scene::{ObjectId, ObjectSet};
 
 /// One sweep; its buffers are reused.
@@ -33,6 +34,8 @@ pub(super) struct Swept {
 pub(super) struct Looked {
     pub(super) slots: DeviceArray<u32>,
     pub(super) asked: Asked,
+    /// Those of them that must be looked at closely.
+    pub(super) open: List,
     /// Into which rays are cast.
     pub(super) groups: Groups,
 }
@@ -76,7 +79,7 @@ impl Swept {
 impl Looked {
     pub(super) fn new(device: &Device) -> Self {
         let slots = DeviceArray::written(device, "tercet swept slots");
-        Self { slots, asked: Asked::new(device), groups: Groups::new(device) }
+        Self { slots, asked: Asked::new(device), open: List::new(device), groups: Groups::new(device) }
     }
 
     /// Uploads which objects are asked about. The upload happens when the encoder is submitted.
@@ -85,6 +88,7 @@ impl Looked {
     /// [`Error::Device`] if the device cannot bind so many.
     pub(super) fn load(&mut self, device: &Device, queue: &Queue, ids: &[ObjectId]) -> Result<(), Error> {
         self.asked.resize(device, ids.len())?;
+        self.open.resize(device, queue, ids.len())?;
         self.slots.resize(device, ids.len())?;
         let listed: Vec<u32> = ids.iter().map(|id| id.slot() as u32).collect();
         queue.write_buffer(self.slots.buffer(), 0, cast_slice(&listed));
