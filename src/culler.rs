@@ -19,9 +19,10 @@ use open::{OpenQuestions, Purse};
 
 pub use why::{Holder, Why};
 
+use crate::costs::HostTimes;
 use crate::geom::{Frustum, PlaneMask, View};
 use crate::policy::{Action, Context, Past, Policy};
-use crate::query::{Answer, DrawTime, QueryBackend, Sweep, Wait};
+use crate::query::{Answer, DrawTime, QueryBackend, Sweep, SweepTest, Wait};
 use crate::scene::{ObjectRef, Scene};
 use crate::stats::FrameStats;
 use crate::tree::{NodeId, Votes};
@@ -37,6 +38,7 @@ pub struct Culler<P> {
     /// Speed against accuracy; exact by default.
     pub tradeoff: Tradeoff,
     costs: Costs,
+    host: HostTimes,
     frame: u32,
     /// How many times coarser than the view the depth of the last frame was.
     divisor: u32,
@@ -70,6 +72,7 @@ impl<P: Policy> Culler<P> {
             policy,
             tradeoff: Tradeoff::EXACT,
             costs: Costs::default(),
+            host: HostTimes::default(),
             frame: 0,
             divisor: 1,
             past: None,
@@ -170,8 +173,8 @@ impl<P: Policy> Culler<P> {
         // What asking reports. Nothing more is asked then, and all that is open is unknown.
         let mut failure = None;
         let draw_time = queries.draw_time();
-        if let DrawTime::Device { total, awaited } = draw_time {
-            (stats.device_draw, stats.awaited_draw) = (total, awaited);
+        if let DrawTime::Device { times, .. } = draw_time {
+            (stats.device_draw, stats.awaited_draw) = (times.total, times.awaited);
         }
         for &slot in scene.objects_store().always() {
             self.drawn.queue(scene, slot);
@@ -217,6 +220,9 @@ impl<P: Policy> Culler<P> {
                     }
                     stats.queries += 1;
                     stats.query_boxes += (groups.len() + loose.len()) as u32;
+                    if test == SweepTest::Owners {
+                        self.drawn.ask_owners(ticket, loose);
+                    }
                     let sweep = Sweep { scene, view, frustum: &frustum, groups, loose, test };
                     stats.query += attempt(&mut failure, || queries.sweep(ticket, &sweep));
                 }
@@ -256,18 +262,15 @@ impl<P: Policy> Culler<P> {
         self.votes.clear();
         self.policy.vote(&mut self.votes);
         self.votes.asks = self.policy.asks();
-        stats.drawn = self.drawn.visible.len() as u32;
-        stats.left_out = self.drawn.left_out();
+        stats.drawn = self.drawn.visible.len() as u32 - self.drawn.unowned;
+        stats.left_out = self.drawn.left_out() + self.drawn.unowned;
         stats.policy = start.elapsed().saturating_sub(stats.draw + stats.query + stats.wait);
+        let told = |frame| queries.device_times(frame);
+        self.costs.record((self.frame, &stats), draw_time, &mut self.host, told);
         // Drawing that is not told apart from waiting would make questions look dear. So would a few
         // questions of a policy that does not ask about nodes, in a frame that it spends otherwise.
-        if draw_time == DrawTime::Unknown {
-            self.costs = self.costs.without_last();
-        } else {
-            self.costs.record(&stats, draw_time != DrawTime::AtOnce);
-            if self.votes.asks {
-                self.costs.learn(&stats);
-            }
+        if draw_time != DrawTime::Unknown && self.votes.asks {
+            self.costs.learn(&stats);
         }
         self.votes.costs = self.costs;
         Ok(stats)
@@ -297,7 +300,8 @@ impl<P> Culler<P> {
         self.expects_cut = true;
     }
 
-    /// The objects drawn in the last frame, in the order of drawing.
+    /// The objects drawn in the last frame, in the order of drawing; without those that were tried and showed nothing,
+    /// and with those that own no sample in the end ([`FrameStats::left_out`] counts both).
     pub fn visible(&self) -> &[ObjectRef] {
         &self.drawn.visible
     }

@@ -15,10 +15,11 @@ pub struct Counter {
 /// What one frame of one view did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
-    /// Objects drawn: handed to the draw closure, and not found to show nothing.
+    /// Objects drawn: handed to the draw closure, and not found to show nothing, at once or in the end.
     pub drawn: u32,
     /// Objects handed to the draw closure of which nothing showed
-    /// ([`Action::DrawIfSeen`](crate::policy::Action::DrawIfSeen)).
+    /// ([`Action::DrawIfSeen`](crate::policy::Action::DrawIfSeen)), or nothing is left in the picture
+    /// ([`SweepTest::Owners`](crate::query::SweepTest::Owners)): they cost what their triangles do.
     pub left_out: u32,
     /// Questions asked.
     pub queries: u32,

@@ -79,7 +79,7 @@ fn alter(chunks: &mut Vec<Vec<u8>>, u: &mut Unstructured<'_>) {
 /// A file of chunks, with sound lengths and checksums.
 fn file(chunks: &[Vec<u8>], frames: u32) -> Vec<u8> {
     // Of the present version.
-    let mut file = b"tercet\r\n\x03\0\0\0".to_vec();
+    let mut file = b"tercet\r\n\x04\0\0\0".to_vec();
     for chunk in chunks {
         let length = (chunk.len() as u32).to_le_bytes();
         let mut hasher = crc32fast::Hasher::new();

@@ -22,6 +22,11 @@ pub(super) struct DrawnList {
     attempt: Option<Ticket>,
     /// Of which nothing showed. Depth only grows nearer, so nothing will.
     hidden: ObjectSet,
+    /// The last question about who owns a sample of what was drawn, and whom it is about.
+    inquiry: Option<Ticket>,
+    asked: ObjectSet,
+    /// How many of those drawn own none.
+    pub(super) unowned: u32,
     pub(super) visible: Vec<ObjectRef>,
     pub(super) entered: Vec<ObjectRef>,
     previous: Vec<ObjectRef>,
@@ -61,7 +66,8 @@ impl DrawnList {
         self.queue.clear();
         self.last.clear();
         self.tried.clear();
-        self.attempt = None;
+        (self.attempt, self.inquiry) = (None, None);
+        self.unowned = 0;
         self.hidden.clear();
         self.entered.clear();
         std::mem::swap(&mut self.visible, &mut self.previous);
@@ -118,12 +124,21 @@ impl DrawnList {
         Ok(())
     }
 
+    /// A question goes to the backend: which of these objects own a sample of what was drawn?
+    pub(super) fn ask_owners(&mut self, ticket: Ticket, objects: &[ObjectId]) {
+        self.inquiry = Some(ticket);
+        self.asked.clear();
+        for &id in objects {
+            self.asked.insert(id);
+        }
+    }
+
     /// How many were tried in this frame, and showed nothing.
     pub(super) fn left_out(&self) -> u32 {
         self.hidden.len() as u32
     }
 
-    /// Takes the answer to an attempt to draw, if it is one.
+    /// Takes the answer to an attempt to draw, or to who owns what was drawn, if it is one.
     pub(super) fn settle(&mut self, ticket: Ticket, answer: Answer<'_>) {
         if self.attempt == Some(ticket) {
             if let Answer::Swept(found) = answer {
@@ -132,6 +147,10 @@ impl DrawnList {
                 }
             }
             self.settle_all();
+        } else if let (true, Answer::Swept(owners)) = (self.inquiry == Some(ticket), answer) {
+            let owns_none =
+                |object: &&ObjectRef| self.asked.contains(object.id) && !owners.contains(object.id);
+            self.unowned = self.visible.iter().filter(owns_none).count() as u32;
         }
     }
 

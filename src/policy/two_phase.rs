@@ -287,7 +287,9 @@ impl<P: Plan> Policy for TwoPhase<P> {
                 Stage::Remember => {
                     // All of it, if nobody knows.
                     if self.answer == Reply::Found {
+                        let before = self.visible.len();
                         self.visible.retain(|&id| self.found.contains(id));
+                        self.counts.left_out += (before - self.visible.len()) as u32;
                     }
                     self.stage = Stage::Done;
                 }

@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::kept::KeptAnswer;
-use super::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
+use super::{Answer, DeviceTimes, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
 use crate::scene::ObjectRef;
@@ -193,6 +193,10 @@ impl<B: QueryBackend> QueryBackend for Faulty<B> {
 
     fn draw_time(&self) -> DrawTime {
         self.inner.draw_time()
+    }
+
+    fn device_times(&self, frame: u64) -> Option<DeviceTimes> {
+        self.inner.device_times(frame)
     }
 
     fn end(&mut self) -> Result<(), Error> {

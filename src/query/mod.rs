@@ -71,18 +71,28 @@ pub enum Wait {
     Block,
 }
 
+/// What a device took to draw a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct DeviceTimes {
+    /// All drawing of the frame.
+    pub total: Duration,
+    /// The part of it that came before the frame's last question: waiting for answers was waiting for this,
+    /// too. What was drawn after it kept nobody waiting.
+    pub awaited: Duration,
+}
+
 /// Where the time of drawing goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawTime {
     /// [`QueryBackend::draw`] takes it.
     AtOnce,
-    /// A device draws while answers are waited for. This is what it took in a frame not long ago.
+    /// A device draws while answers are waited for.
     Device {
-        /// All drawing of the frame.
-        total: Duration,
-        /// The part of it that came before the frame's last question: waiting for answers was
-        /// waiting for this, too. What was drawn after it kept nobody waiting.
-        awaited: Duration,
+        /// Of a frame not long ago.
+        times: DeviceTimes,
+        /// Which of the backend's frames has begun: [`QueryBackend::device_times`] knows them by this number. It grows
+        /// from frame to frame, whoever's they are.
+        now: u64,
     },
     /// The same, and nobody knows how long it takes.
     Unknown,
@@ -192,6 +202,12 @@ pub trait QueryBackend {
     /// Where the time of drawing goes: what drawing costs is learnt from it.
     fn draw_time(&self) -> DrawTime {
         DrawTime::AtOnce
+    }
+
+    /// What a device took to draw one of the last frames, by its number ([`DrawTime::Device`]), if that is known by
+    /// now.
+    fn device_times(&self, _frame: u64) -> Option<DeviceTimes> {
+        None
     }
 
     /// Ends the frame.

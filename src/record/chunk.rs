@@ -14,7 +14,7 @@ use crate::{Costs, Error, Tradeoff};
 /// The first bytes of every recording.
 const MAGIC: [u8; 8] = *b"tercet\r\n";
 /// Of the format. A change that older files do not follow makes it greater.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// No chunk is longer: a length beyond it is damage, and no memory is asked for.
 const LONGEST: u32 = 1 << 30;
 

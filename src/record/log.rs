@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::chunk::RecordedView;
 use crate::Error;
 use crate::geom::{Proxy, View};
-use crate::query::{Answer, DrawTime, KeptAnswer, QueryBackend, Sweep, Ticket, Wait, Want};
+use crate::query::{Answer, DeviceTimes, DrawTime, KeptAnswer, QueryBackend, Sweep, Ticket, Wait, Want};
 use crate::scene::{ObjectRef, Scene};
 
 /// The questions of a frame, in short, and the answers, delivery by delivery.
@@ -176,6 +176,10 @@ impl<B: QueryBackend> QueryBackend for Logged<B> {
 
     fn draw_time(&self) -> DrawTime {
         self.backend.draw_time()
+    }
+
+    fn device_times(&self, frame: u64) -> Option<DeviceTimes> {
+        self.backend.device_times(frame)
     }
 
     fn end(&mut self) -> Result<(), Error> {

@@ -11,8 +11,8 @@ pub struct Fickle<P>(pub P);
 fn told<'a>(cx: &Context<'a>) -> Context<'a> {
     let objects = 1 + cx.frame * 7 % 50;
     let seconds = if (cx.frame / 12).is_multiple_of(2) { 1e-3 } else { 1.0 };
-    let (total, is_late) = (seconds * objects as f32, !(cx.frame / 30).is_multiple_of(2));
-    let last = FrameCost { total, draw: 1e-3, drawn: objects, is_late };
+    let (total, ago) = (seconds * objects as f32, 1 + 2 * (cx.frame / 30 % 2));
+    let last = FrameCost { total, draw: 1e-3, drawn: objects, ago };
     Context { costs: cx.costs.after(last), ..*cx }
 }
 

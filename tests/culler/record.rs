@@ -182,7 +182,7 @@ fn an_altered_file_says_so() {
     let mut newer = file.clone();
     newer[8] = 200;
     let error = play(&newer).expect_err("it is of another version");
-    assert!(error.contains("version 200") && error.contains("version 3:"), "{error}");
+    assert!(error.contains("version 200") && error.contains("version 4:"), "{error}");
 }
 
 #[test]

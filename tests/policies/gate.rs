@@ -85,7 +85,7 @@ impl Rig {
         }
         let seconds = drawn as f32 * OBJECT + questions as f32 * self.question;
         let draw = drawn as f32 * OBJECT;
-        self.costs = self.costs.after(FrameCost { total: seconds, draw, drawn, is_late: false });
+        self.costs = self.costs.after(FrameCost { total: seconds, draw, drawn, ago: 1 });
         let gated = policy.counters().iter().any(|c| c.key == "gated_frames" && c.count > 0);
         Did { drawn, questions, gated, seconds, actions }
     }
@@ -255,7 +255,7 @@ fn lost_answers_do_not_open_the_gate() {
                 _ => {}
             }
         }
-        rig.costs = rig.costs.after(FrameCost { total: 1e-3, draw: 1e-3, drawn: OBJECTS, is_late: false });
+        rig.costs = rig.costs.after(FrameCost { total: 1e-3, draw: 1e-3, drawn: OBJECTS, ago: 1 });
         assert!(!policy.asks());
     }
 }

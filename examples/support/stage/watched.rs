@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use tercet::Error;
 use tercet::geom::{Proxy, View};
-use tercet::query::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
+use tercet::query::{Answer, DeviceTimes, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
 use tercet::scene::ObjectRef;
 
 use super::{Inspected, Level};
@@ -163,6 +163,10 @@ impl<B: Inspected> QueryBackend for Watched<B> {
 
     fn draw_time(&self) -> DrawTime {
         self.backend.draw_time()
+    }
+
+    fn device_times(&self, frame: u64) -> Option<DeviceTimes> {
+        self.backend.device_times(frame)
     }
 
     fn end(&mut self) -> Result<(), Error> {

@@ -1,9 +1,11 @@
 //! The policy that picks a policy: whichever is fastest in this scene, on this machine, now.
 //!
 //! It begins with groups and rays ([`Hroc`]), which need no frame to learn. Other ways of culling race against it, a few frames at a time ([`race`]), and the fastest is
-//! kept: the frustum alone, if too little is hidden for asking to pay; on a device dual queries, CHC++ or
-//! a pyramid, if they wait for less. Who races depends on what the scene shows ([`signs`]): where things move, policies that test
-//! each mover apart (*hybrid*, *roc*) come in.
+//! kept: the frustum alone, if too little is hidden for asking to pay; on a device a pyramid, which is built
+//! quickly and lets more through. Who races depends on what the scene shows ([`signs`]): where things move, policies
+//! that test each mover apart (*hybrid*, *roc*) come in. Whoever asks node by node is left out: in no world of
+//! `docs/measurements/hroc.md` was it the fastest, on either backend, and to find that out takes many frames, as
+//! it must see nodes before it can cull.
 //!
 //! Times arrive recorded, as [`Costs::last_frame`](crate::Costs::last_frame): the same times and answers,
 //! the same choices. On a device that does not say how long it draws, groups and rays stay.
@@ -19,10 +21,7 @@ mod signs;
 
 use std::fmt::Write;
 
-use super::{
-    Action, Answer, ChcPlusPlus, Context, DualQuery, Fate, FrustumOnly, HiZ, Hroc, Hybrid, Policy, Roc,
-    Ticket,
-};
+use super::{Action, Answer, Context, Fate, FrustumOnly, HiZ, Hroc, Hybrid, Policy, Roc, Ticket};
 use crate::dial::{self, Dial};
 use crate::tree::{NodeId, Votes};
 use crate::{Counter, Error};
@@ -50,8 +49,6 @@ struct Ways {
     frustum: FrustumOnly,
     hybrid: Hybrid,
     roc: Roc,
-    dual_query: DualQuery,
-    chc_plus_plus: ChcPlusPlus,
     hi_z: HiZ,
 }
 
@@ -59,19 +56,9 @@ const HROC: usize = 0;
 const FRUSTUM: usize = 1;
 const HYBRID: usize = 2;
 const ROC: usize = 3;
-const DUAL_QUERY: usize = 4;
-const CHC_PLUS_PLUS: usize = 5;
-const HI_Z: usize = 6;
+const HI_Z: usize = 4;
 /// By number: what counters call a way, which says how many frames were its.
-const KEYS: [&str; 7] = [
-    "auto_hroc",
-    "auto_frustum",
-    "auto_hybrid",
-    "auto_roc",
-    "auto_dual_query",
-    "auto_chc_plus_plus",
-    "auto_hi_z",
-];
+const KEYS: [&str; 5] = ["auto_hroc", "auto_frustum", "auto_hybrid", "auto_roc", "auto_hi_z"];
 /// The share of the objects that move from which movers are tested apart.
 const MOVERS: f32 = 0.01;
 
@@ -83,8 +70,6 @@ impl Default for Ways {
             frustum: FrustumOnly::from_near_to_far(),
             hybrid: Hybrid::default(),
             roc: Roc::default(),
-            dual_query: DualQuery::default(),
-            chc_plus_plus: ChcPlusPlus::default(),
             hi_z: HiZ::default(),
         }
     }
@@ -97,8 +82,6 @@ impl Ways {
             FRUSTUM => &self.frustum,
             HYBRID => &self.hybrid,
             ROC => &self.roc,
-            DUAL_QUERY => &self.dual_query,
-            CHC_PLUS_PLUS => &self.chc_plus_plus,
             _ => &self.hi_z,
         }
     }
@@ -109,8 +92,6 @@ impl Ways {
             FRUSTUM => &mut self.frustum,
             HYBRID => &mut self.hybrid,
             ROC => &mut self.roc,
-            DUAL_QUERY => &mut self.dual_query,
-            CHC_PLUS_PLUS => &mut self.chc_plus_plus,
             _ => &mut self.hi_z,
         }
     }
@@ -128,21 +109,15 @@ impl race::Ways for Field {
     fn admits(&self, way: usize) -> bool {
         match way {
             HYBRID | ROC => self.moves,
-            // Where the CPU answers, nothing that asks node by node, or by a pyramid, was ever faster than
-            // rays, and to find that out took longer than it could save.
-            DUAL_QUERY | CHC_PLUS_PLUS | HI_Z => self.device,
+            // Where the CPU answers, a pyramid was never faster than rays.
+            HI_Z => self.device,
             _ => true,
         }
     }
 
-    /// Whoever asks about nodes must see them before it can cull, and the tree must become finer for it;
-    /// what sweeps draw first is what was drawn last, whoever drew it.
+    /// What sweeps draw first is what they drew last.
     fn learns(&self, way: usize) -> [u32; 2] {
-        match way {
-            FRUSTUM => [0, 0],
-            DUAL_QUERY | CHC_PLUS_PLUS => [3, 1],
-            _ => [1, 0],
-        }
+        if way == FRUSTUM { [0, 0] } else { [1, 0] }
     }
 }
 
@@ -193,14 +168,13 @@ impl Policy for Auto {
         self.objects = cx.scene.len();
         let last = cx.costs.last_frame();
         self.drawn = last.map_or(self.drawn, |last| last.drawn);
-        let before = self.running;
         if self.race {
-            let is_late = last.is_some_and(|last| last.is_late);
-            let field = Field { moves: self.signs.moving >= MOVERS, device: is_late };
-            self.running = self.contest.next(last.map(|last| last.total), is_late, &field);
+            let device = last.is_some_and(|last| last.ago > 1);
+            let field = Field { moves: self.signs.moving >= MOVERS, device };
+            self.running = self.contest.next(last.map(|last| (last.total, last.ago)), &field);
         }
-        // A way must not take another's frame for its own.
-        let costs = if before == self.running { cx.costs } else { cx.costs.without_last() };
+        // The frame that is told of may have been another way's.
+        let costs = cx.costs.without_last();
         self.ways.get_mut(self.running).begin(&Context { costs, ..*cx });
     }
 

@@ -27,7 +27,7 @@
 //! asking was, which a shut gate sees for nothing.
 
 use super::book::Book;
-use crate::costs::FrameCost;
+use crate::costs::{FrameCost, KEPT};
 
 /// What a frame does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,8 +42,11 @@ pub(super) enum Plan {
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     stage: Stage,
-    /// What the last frame was; None before the first.
-    last: Option<Plan>,
+    /// How many stages there have been, and frames.
+    stages: u32,
+    frames: u32,
+    /// The last frames, by number, modulo how many are kept: what a device tells is of one of them.
+    runs: [Option<Run>; KEPT],
     book: Book,
     /// Objects in view, when they were last counted.
     in_view: f32,
@@ -78,6 +81,16 @@ enum Stage {
     },
 }
 
+/// A frame whose time may still come.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    frame: u32,
+    plan: Plan,
+    /// In which stage, and which of the frames of a trial or a look it was, from 1 on.
+    stage: u32,
+    number: u32,
+}
+
 /// A trial that did not pay.
 #[derive(Clone, Copy, Debug)]
 struct Failure {
@@ -101,8 +114,7 @@ const RUINOUS: f32 = 3.0;
 const SURE: f32 = 0.8;
 /// Drawing is dearer than asking was: by so much, lest it is noise.
 const DEARER: f32 = 1.1;
-/// Frames of a look; the last one of which the time is known counts. A device's times are those of
-/// frames before.
+/// Frames of a look, at least; the first of which the time is known, of the last of these and any after, counts.
 const LOOK: u32 = 3;
 /// Frames from one count of what is in view to the next: as often, a look can begin.
 const COUNT_EVERY: u32 = 8;
@@ -126,7 +138,9 @@ impl Default for Gate {
     fn default() -> Self {
         Self {
             stage: Stage::Shut { until_probe: 0, interval: 1 },
-            last: None,
+            stages: 0,
+            frames: 0,
+            runs: [None; KEPT],
             book: Book::default(),
             in_view: 0.0,
             failure: None,
@@ -138,14 +152,29 @@ impl Default for Gate {
 }
 
 impl Gate {
-    /// What the next frame does, after one that took `last`. Once a frame.
-    pub(super) fn plan(&mut self, last: Option<FrameCost>) -> Plan {
-        if let (Some(cost), Some(plan)) = (last, self.last) {
-            self.book.enter(plan, cost, matches!(self.stage, Stage::Look { drawn: LOOK.., .. }));
-            self.judge(cost);
+    /// What the next frame does, given what an earlier one took. Once a frame.
+    pub(super) fn plan(&mut self, known: Option<FrameCost>) -> Plan {
+        self.frames = self.frames.wrapping_add(1);
+        if let Some(cost) = known {
+            let frame = self.frames.wrapping_sub(cost.ago);
+            let run = self.runs[frame as usize % KEPT].filter(|run| run.frame == frame);
+            if let Some(Run { plan, stage, number, .. }) = run {
+                let is_of_stage = stage == self.stages;
+                let is_look = matches!(self.stage, Stage::Look { .. });
+                let is_verdict = is_of_stage && is_look && number >= LOOK;
+                self.book.enter(plan, cost, is_verdict);
+                if is_of_stage {
+                    self.judge(cost, number);
+                }
+            }
         }
-        let plan = if self.is_blind(last) { Plan::Ask { count: false } } else { self.advance() };
-        self.last = Some(plan);
+        let plan = if self.is_blind(known) { Plan::Ask { count: false } } else { self.advance() };
+        let number = match self.stage {
+            Stage::Trial { asked: number } | Stage::Look { drawn: number, .. } => number,
+            Stage::Shut { .. } | Stage::Open { .. } => 0,
+        };
+        let run = Run { frame: self.frames, plan, stage: self.stages, number };
+        self.runs[run.frame as usize % KEPT] = Some(run);
         plan
     }
 
@@ -164,9 +193,9 @@ impl Gate {
                 is_dearer || waited >= wait || hidden > 1.5 * before + FEW
             }
         };
-        self.stage = if pays && is_news {
+        if pays && is_news {
             self.book.asking.clear();
-            Stage::Trial { asked: 0 }
+            self.enter(Stage::Trial { asked: 0 });
         } else {
             if let (true, Some(failure), Some(lately)) =
                 (is_dearer, &mut self.failure, self.book.drawing_all.lately())
@@ -175,8 +204,8 @@ impl Gate {
                 failure.asking = failure.asking.max(lately);
             }
             let interval = (2 * interval).min(most.max(1));
-            Stage::Shut { until_probe: interval - 1, interval }
-        };
+            self.stage = Stage::Shut { until_probe: interval - 1, interval };
+        }
     }
 
     /// How many objects are in view of a frame that asks.
@@ -201,9 +230,7 @@ impl Gate {
     fn is_blind(&mut self, last: Option<FrameCost>) -> bool {
         match last {
             Some(_) => self.blind = 0,
-            None if self.book.is_empty() && self.last.is_some() => {
-                self.blind = (self.blind + 1).min(BLIND + 1)
-            }
+            None if self.book.is_empty() && self.frames > 1 => self.blind = (self.blind + 1).min(BLIND + 1),
             None => {}
         }
         self.blind > BLIND
@@ -220,11 +247,16 @@ impl Gate {
         })
     }
 
-    /// Ends a trial or a look.
-    fn judge(&mut self, last: FrameCost) {
+    fn enter(&mut self, stage: Stage) {
+        self.stages = self.stages.wrapping_add(1);
+        self.stage = stage;
+    }
+
+    /// Ends a trial or a look, of which so many frames are known.
+    fn judge(&mut self, last: FrameCost, number: u32) {
         match self.stage {
-            Stage::Trial { asked } if asked > 0 => self.judge_trial(asked, last),
-            Stage::Look { drawn: LOOK.., ends_trial } => {
+            Stage::Trial { .. } if number > 0 => self.judge_trial(number, last),
+            Stage::Look { ends_trial, .. } if number >= LOOK => {
                 let asking = self.book.asking.lately().unwrap_or(0.0);
                 if asking > last.total {
                     // What the next trial would lose, until it is so small a part of the time.
@@ -247,7 +279,7 @@ impl Gate {
             return self.book.asking.clear();
         }
         let goes_on = match self.book.asking.trend() {
-            // One such frame may have been held up, or be a device's word on the first.
+            // One such frame may have been held up.
             None => {
                 let is_ruinous = asking > RUINOUS * whole && asked > 2;
                 !is_ruinous && last.total < RUINOUS * RUINOUS * whole
@@ -259,7 +291,7 @@ impl Gate {
             }
         };
         if !goes_on {
-            self.stage = Stage::Look { drawn: 0, ends_trial: true };
+            self.enter(Stage::Look { drawn: 0, ends_trial: true });
         }
     }
 
@@ -269,7 +301,7 @@ impl Gate {
             self.patience = (self.patience / 2).max(PATIENCE);
         }
         self.look_lost = lost;
-        self.stage = Stage::Open { until_count: 0, frames: 0, looks: false };
+        self.enter(Stage::Open { until_count: 0, frames: 0, looks: false });
     }
 
     /// Asking takes so many seconds a frame; so many frames pass at least before it is tried again.
@@ -278,7 +310,7 @@ impl Gate {
         self.failure = Some(Failure { hidden: None, asking, wait, waited: 0 });
         self.patience = (2 * self.patience).min(MOST_PATIENCE);
         self.book.drawing_all.clear();
-        self.stage = Stage::Shut { until_probe: 0, interval: 1 };
+        self.enter(Stage::Shut { until_probe: 0, interval: 1 });
     }
 
     fn advance(&mut self) -> Plan {
@@ -302,7 +334,7 @@ impl Gate {
                 Plan::Ask { count: false }
             }
             Stage::Open { looks: true, .. } => {
-                self.stage = Stage::Look { drawn: 1, ends_trial: false };
+                self.enter(Stage::Look { drawn: 1, ends_trial: false });
                 Plan::Whole { probe: false }
             }
             Stage::Open { until_count, frames, .. } => {

@@ -1,7 +1,7 @@
 //! The gate through frames whose times were measured, and through others that never end.
 
 use super::gate::{Gate, Plan};
-use crate::costs::FrameCost;
+use crate::costs::{FrameCost, KEPT};
 
 /// A frame, as either way would have it.
 #[derive(Clone, Copy)]
@@ -29,8 +29,14 @@ struct Sums {
 
 /// `frame` is given its number and how many have asked before.
 fn run(frames: u32, frame: impl Fn(u32, u32) -> Frame) -> Sums {
-    let (mut gate, mut last, mut sums) = (Gate::default(), None, Sums::default());
+    run_late(frames, 1, frame)
+}
+
+/// The same where what a frame took is known so many frames later.
+fn run_late(frames: u32, ago: u32, frame: impl Fn(u32, u32) -> Frame) -> Sums {
+    let (mut gate, mut costs, mut sums) = (Gate::default(), Vec::new(), Sums::default());
     for number in 0..frames {
+        let last = number.checked_sub(ago).map(|known| costs[known as usize]);
         let Frame { in_view, whole, drawn, asking, drawing } = frame(number, sums.asked);
         sums.whole += whole;
         sums.asking += frame(number, number).asking;
@@ -39,18 +45,18 @@ fn run(frames: u32, frame: impl Fn(u32, u32) -> Frame) -> Sums {
                 if probe {
                     gate.probed(1.0 - drawn as f32 / in_view, in_view, 0.3, 32);
                 }
-                FrameCost { total: whole, draw: 0.95 * whole, drawn: in_view as u32, is_late: false }
+                FrameCost { total: whole, draw: 0.95 * whole, drawn: in_view as u32, ago }
             }
             Plan::Ask { count } => {
                 if count {
                     gate.counted(in_view);
                 }
                 sums.asked += 1;
-                FrameCost { total: asking, draw: drawing, drawn, is_late: false }
+                FrameCost { total: asking, draw: drawing, drawn, ago }
             }
         };
         sums.gate += cost.total;
-        last = Some(cost);
+        costs.push(cost);
     }
     sums
 }
@@ -110,6 +116,18 @@ fn one_dear_frame_does_not_end_a_trial() {
     }
 }
 
+/// What a device tells late is held against its frame: the first one that asks, which is the dearest, ends no trial,
+/// and frames drawn whole are not taken for such as ask.
+#[test]
+fn a_device_that_tells_late_changes_little() {
+    for ago in 1..KEPT as u32 {
+        let sums = run_late(300, ago, |_, asked| steady(if asked == 0 { 400.0 } else { 10.0 }));
+        assert!(sums.asked > 270, "{ago} frames: {sums:?}");
+        let sums = run_late(2000, ago, |number, _| steady(30.0 * noise(2 * number, 0.1)));
+        assert!(sums.gate < 1.05 * sums.whole, "{ago} frames: {sums:?}");
+    }
+}
+
 /// And if it ends up dearer than drawing after all, little is lost.
 #[test]
 fn asking_that_never_pays_costs_less_than_three_per_cent() {
@@ -141,14 +159,14 @@ fn dear_frames_are_probed_no_more_often_than_others() {
                     gate.probed(if turned { 0.0 } else { 0.9 }, 10_000.0, 0.3, 32);
                 }
                 let total = if turned { 20.0 * (1.0 + number as f32 / 10_000.0) } else { 5.0 };
-                FrameCost { total, draw: total, drawn: 10_000, is_late: false }
+                FrameCost { total, draw: total, drawn: 10_000, ago: 1 }
             }
             Plan::Ask { count } => {
                 if count {
                     gate.counted(10_000.0);
                 }
                 let total = if turned { 30.0 } else { 5.5 };
-                FrameCost { total, draw: 1.0, drawn: 1000, is_late: false }
+                FrameCost { total, draw: 1.0, drawn: 1000, ago: 1 }
             }
         };
         last = Some(cost);
@@ -174,7 +192,7 @@ fn a_look_ends_though_a_time_is_lost() {
                 Plan::Ask { .. } => 18.0,
             };
             let drawn = if matches!(plan, Plan::Ask { .. }) { 1000 } else { 10_000 };
-            last = (number != lost).then_some(FrameCost { total, draw: 1.0, drawn, is_late: false });
+            last = (number != lost).then_some(FrameCost { total, draw: 1.0, drawn, ago: 1 });
         }
         assert!(whole < 30, "without frame {lost}: {whole} drawn whole");
     }

@@ -67,6 +67,9 @@ const MOST_PASSES: usize = 1024;
 /// Frames whose timestamps may be on their way at once. If more are, some are not timed.
 const MOST_FRAMES: usize = 4;
 
+/// Frames whose times are kept: views that share a backend have one in so many.
+const KEPT: usize = 16;
+
 /// The timestamps of passes.
 #[derive(Debug)]
 pub(super) struct Clock {
@@ -87,6 +90,8 @@ pub(super) struct Clock {
     untimed: u64,
     /// Of the last frame whose timestamps have arrived, unless one that is not timed came later.
     times: Option<Times>,
+    /// By frame, modulo their number: which one, and its times.
+    told: [(u64, Times); KEPT],
 }
 
 /// Timestamps on their way.
@@ -130,6 +135,7 @@ impl Clock {
             count: 0,
             untimed: 0,
             times: None,
+            told: Default::default(),
         })
     }
 
@@ -139,11 +145,25 @@ impl Clock {
         self.times
     }
 
+    /// Which frame has begun, from 1 on.
+    pub(super) fn now(&self) -> u64 {
+        self.count
+    }
+
+    /// Of one of the last frames, if its timestamps had arrived when this one began.
+    pub(super) fn times_of(&self, frame: u64) -> Option<Times> {
+        let (of, times) = self.told[frame as usize % KEPT];
+        (of == frame && frame > 0).then_some(times)
+    }
+
     /// Looks what has arrived, and starts anew.
     pub(super) fn begin_frame(&mut self) {
         self.frames.sort_unstable_by_key(|frame| frame.number);
         for frame in &self.frames {
             let times = frame.ticks.read(|bytes| times(&frame.passes, bytes, self.period));
+            if let Some(times) = times {
+                self.told[frame.number as usize % KEPT] = (frame.number, times);
+            }
             self.times = times.filter(|_| frame.number > self.untimed).or(self.times);
             // What was recorded and not submitted never will be.
             frame.ticks.reclaim();

@@ -100,7 +100,7 @@ pub use sweep::Level;
 pub(crate) use sweep::mirror::Mirrored;
 pub use targets::{ColorTarget, DepthTarget, FrameTargets};
 
-use super::{Answer, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
+use super::{Answer, DeviceTimes, DrawTime, QueryBackend, Sweep, Ticket, Wait, Want};
 use crate::Error;
 use crate::geom::{Proxy, View};
 use ask_natively::AskNatively;
@@ -244,6 +244,12 @@ impl GpuQueries {
         self.frame.as_ref().is_some_and(|frame| frame.is_late)
     }
 
+    /// What the device drew of a frame.
+    fn drawing(&self, Times { draw, awaited_draw, .. }: Times) -> DeviceTimes {
+        // Late questions wait for what the last frame drew, and for nothing else.
+        DeviceTimes { total: draw, awaited: if self.is_late() { draw } else { awaited_draw } }
+    }
+
     /// Forgets the last frame.
     fn restart(&mut self) {
         self.forget();
@@ -325,12 +331,15 @@ impl QueryBackend for GpuQueries {
     }
 
     fn draw_time(&self) -> DrawTime {
-        let times = self.clock.as_ref().and_then(Clock::times);
-        times.map_or(DrawTime::Unknown, |Times { draw, awaited_draw, .. }| DrawTime::Device {
-            total: draw,
-            // Late questions wait for what the last frame drew, and for nothing else.
-            awaited: if self.is_late() { draw } else { awaited_draw },
+        let Some(clock) = &self.clock else { return DrawTime::Unknown };
+        clock.times().map_or(DrawTime::Unknown, |times| DrawTime::Device {
+            times: self.drawing(times),
+            now: clock.now(),
         })
+    }
+
+    fn device_times(&self, frame: u64) -> Option<DeviceTimes> {
+        self.clock.as_ref()?.times_of(frame).map(|times| self.drawing(times))
     }
 
     fn end(&mut self) -> Result<(), Error> {
