@@ -6,6 +6,7 @@ mod failures;
 #[path = "../support/geometry.rs"]
 mod geometry;
 mod indirect;
+mod indirect_filter;
 mod indirect_renderer;
 mod late;
 mod lifecycle;

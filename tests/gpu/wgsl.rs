@@ -28,8 +28,8 @@ fn sources() -> Vec<(String, Capabilities)> {
         }
     }
     let Shaders { ask_natively, project, enclose, enlist, .. } = shaders;
-    let Shaders { mark, extract, spread, select, compact, .. } = Shaders::default();
-    for source in [ask_natively, project, enclose, enlist, mark, extract, spread, select, compact] {
+    let Shaders { mark, extract, spread, select, filter, compact, .. } = Shaders::default();
+    for source in [ask_natively, project, enclose, enlist, mark, extract, spread, select, filter, compact] {
         all.push((source.into_owned(), Capabilities::empty()));
     }
     all
@@ -70,9 +70,9 @@ fn shaders_are_valid_and_portable() {
         }
     }
     assert_eq!(
-        entries, 50,
+        entries, 51,
         "twice each: four vertex, three fragment and eleven compute stages; two of native queries, and \
-         twelve more that read no depth"
+         thirteen more that read no depth"
     );
 }
 

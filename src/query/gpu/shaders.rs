@@ -63,6 +63,8 @@ pub struct Shaders {
     pub spread: Cow<'static, str>,
     /// Which objects a list of an indirect frame holds.
     pub select: Cow<'static, str>,
+    /// Who is forgotten of those that own no sample, in an indirect frame with an item buffer.
+    pub filter: Cow<'static, str>,
     /// Instances and arguments of an indirect frame.
     pub compact: Cow<'static, str>,
 }
@@ -216,6 +218,10 @@ impl Default for Shaders {
             select: Cow::Borrowed(concat!(
                 include_str!("../../../shaders/shared/verdict.wgsl"),
                 include_str!("../../../shaders/indirect/select.wgsl"),
+            )),
+            filter: Cow::Borrowed(concat!(
+                include_str!("../../../shaders/shared/verdict.wgsl"),
+                include_str!("../../../shaders/indirect/filter.wgsl"),
             )),
             compact: Cow::Borrowed(include_str!("../../../shaders/indirect/compact.wgsl")),
         }

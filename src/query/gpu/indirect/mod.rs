@@ -16,12 +16,15 @@
 //! objects from frame to frame. [`draw::BySlot`](crate::draw::BySlot) is what the reference renderer draws
 //! them from. No optional feature is needed: no first instance, no count.
 //!
+//! With an item buffer ([`IndirectCuller::target_ids`]) who was drawn and owns no sample is not drawn first again.
+//!
 //! By [`SweepTest::Rays`] objects are tested as HROC does: what was drawn first tells which subtrees hold
 //! none of it, and rays go down these. The same are found as by [`SweepTest::Raster`].
 //!
 //! | file | |
 //! |---|---|
 //! | `config`, `draws` | dials, and what the app draws |
+//! | `filter` | occluder filtering, by an item buffer |
 //! | `groups` | occludee groups, and rays |
 //! | `order` | objects by mesh, and meshes by batch |
 //! | `select` | which objects a list holds: a prefix sum |
@@ -30,6 +33,7 @@
 mod compact;
 mod config;
 mod draws;
+mod filter;
 mod groups;
 mod order;
 mod select;
@@ -58,6 +62,7 @@ use crate::geom::View;
 use crate::query::SweepTest;
 use crate::scene::Scene;
 use compact::{ARGUMENTS, Compact, Instances, Parts};
+use filter::Filter;
 use groups::Groups;
 use order::Order;
 use select::{Select, Source, Which};
@@ -120,6 +125,9 @@ pub struct IndirectCuller {
     /// By slot, across frames.
     remembered: Buffer,
     lists: [Instances; 3],
+    /// The app's item buffer, if it has one, and what looks through it.
+    ids: Option<TextureView>,
+    filter: Option<Filter>,
     counters: Option<ReadBack>,
     counted: Option<[u32; 5]>,
 }
@@ -160,6 +168,8 @@ impl IndirectCuller {
                 groups: (config.test == SweepTest::Rays).then(|| Groups::new(device, &config.shaders)),
                 remembered: remembered(device, 64),
                 lists: std::array::from_fn(|_| Instances::new(device, 64, 16)),
+                ids: None,
+                filter: None,
                 counters: config.counters.then(|| ReadBack::new(device, COUNTERS)),
                 counted: None,
                 config,
@@ -193,6 +203,7 @@ impl IndirectCuller {
     ) -> Result<IndirectStats, Error> {
         scene.check_updated()?;
         targets.check(view, self.device.adapter_info().backend)?;
+        self.check_ids(view)?;
         let device = self.device.clone();
         guarded(&device, || {
             self.take_counters();
@@ -212,6 +223,7 @@ impl IndirectCuller {
                     draw(&mut pass, &self.batches(which));
                 }
             }
+            self.record_filter(&mut tape, view)?;
             Ok(self.stats(uploaded))
         })?
     }

@@ -12,10 +12,10 @@ pub(in crate::query::gpu) const SEEN: u32 = 2;
 pub(in crate::query::gpu) const OUTSIDE: u32 = 0;
 
 /// One of these each.
-pub(super) type Verdicts = DeviceArray<u32>;
+pub(in crate::query::gpu) type Verdicts = DeviceArray<u32>;
 
 /// Verdicts on nothing.
-pub(super) fn verdicts(device: &Device) -> Verdicts {
+pub(in crate::query::gpu) fn verdicts(device: &Device) -> Verdicts {
     let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
     DeviceArray::new(device, "tercet verdicts", usage)
 }

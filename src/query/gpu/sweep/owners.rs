@@ -18,12 +18,16 @@ use crate::query::gpu::shaders::Shaders;
 
 /// The pass.
 #[derive(Debug)]
-pub(super) struct Owners(Stage);
+pub(in crate::query::gpu) struct Owners(Stage);
 
 impl Owners {
     /// # Errors
     /// [`Error::Device`] if the device refuses it.
-    pub(super) fn new(device: &Device, shaders: &Shaders, multisampled: bool) -> Result<Self, Error> {
+    pub(in crate::query::gpu) fn new(
+        device: &Device,
+        shaders: &Shaders,
+        multisampled: bool,
+    ) -> Result<Self, Error> {
         guarded(device, || {
             let module = compiled(device, shaders.sweep_owners.source(multisampled));
             let ids = DepthAs::Ids { multisampled };
@@ -32,7 +36,7 @@ impl Owners {
     }
 
     /// Records the looking through an item buffer: verdicts are by slot, and are none at first.
-    pub(super) fn record(
+    pub(in crate::query::gpu) fn record(
         &self,
         tape: &mut Tape<'_>,
         (frame, ids): (&Buffer, &TextureView),

@@ -73,7 +73,7 @@ impl Stage {
     }
 
     /// Binds nothing that it reads: group 0 must be something.
-    pub(super) fn bind_nothing(&self, device: &Device) -> BindGroup {
+    pub(in crate::query::gpu) fn bind_nothing(&self, device: &Device) -> BindGroup {
         let unread = device.create_buffer(&BufferDescriptor {
             label: Some("tercet nothing"),
             size: 16,
