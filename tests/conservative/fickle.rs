@@ -9,7 +9,7 @@ pub struct Fickle<P>(pub P);
 
 /// Twelve frames in which questions cost nothing, and twelve in which they cost much; now a device's, now not.
 fn told<'a>(cx: &Context<'a>) -> Context<'a> {
-    let objects = 1 + cx.frame * 7 % 50;
+    let objects = 30 + cx.frame * 7 % 20;
     let seconds = if (cx.frame / 12).is_multiple_of(2) { 1e-3 } else { 1.0 };
     let (total, ago) = (seconds * objects as f32, 1 + 2 * (cx.frame / 30 % 2));
     let last = FrameCost { total, draw: 1e-3, drawn: objects, ago };

@@ -86,15 +86,8 @@ fn run(gpu: &Gpu, samples: u32, shaders: Shaders, filters: bool) -> (u32, usize,
         multiview_mask: None,
         cache: None,
     });
-    let entry = |binding, buffer: &wgpu::Buffer| (binding, buffer.clone());
-    let bound = [entry(0, &uniform), entry(1, &places)];
-    let entries: Vec<_> = bound
-        .iter()
-        .map(|(binding, buffer)| wgpu::BindGroupEntry {
-            binding: *binding,
-            resource: buffer.as_entire_binding(),
-        })
-        .collect();
+    let entries = [(0, &uniform), (1, &places)]
+        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
     let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(0),
